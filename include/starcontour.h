@@ -332,11 +332,11 @@ enum { SC_REST_UNMARKED = 0, SC_REST_MARKED = 1 };
  *                   _SWEPT. All that only culling needs is left out, and with SC_PARTITION_FAST
  *                   patches are cut from a space-filling curve. Building takes 0.25 to 0.4 of the
  *                   time (of thin tubes 0.8), model and workspace less than half of the memory, and
- *                   a query 1.1 to 1.3 times as long as by SC_METHOD_AABB on a full model (where
- *                   many thin tubes lie close together up to 2.6 times): the faster way for a mesh
- *                   that is asked about once, or up to some ten times. Pairs are the same. The
- *                   default methods are those by boxes on such a model; what asks for another one,
- *                   for a contour test, or for SC_REST_MARKED, ends with SC_ERROR_BOXES_ONLY
+ *                   a query 1.2 to 2.9 times as long as by SC_METHOD_AABB on a full model (where
+ *                   many thin tubes lie close together 4.4 times): the faster way for a mesh that
+ *                   is asked about once, or up to some ten times. Pairs are the same. The default
+ *                   methods are those by boxes on such a model; what asks for another one, for a
+ *                   contour test, or for SC_REST_MARKED, ends with SC_ERROR_BOXES_ONLY
  */
 enum { SC_MODEL_FULL = 0, SC_MODEL_BOXES = 1 };
 
@@ -604,9 +604,10 @@ enum {
     SC_METHOD_AABB_SCTT = 2, /* box recursion from the non-adjacent children of the test tree's
                                 nodes: the paper's optimised tree of axis-aligned bounding boxes
                                 (AABB) */
-    SC_METHOD_AABB = 3       /* the plain tree of boxes: all that a model with SC_MODEL_BOXES needs;
-                                of a full one, the choice for strands and thin tubes alone, whose
-                                patches face all directions */
+    SC_METHOD_AABB = 3       /* the plain tree of boxes, all that a model with SC_MODEL_BOXES needs;
+                                on a full one the choice for strands and thin tubes alone, whose
+                                patches face all directions: it looks at contours, too, but only at
+                                those of two leaf clusters */
 };
 
 /* The contour test of SC_METHOD_SCTT. */

@@ -164,7 +164,7 @@ static sc_status begin_question(const objects_run *run, const sc_model *model,
     } else {
         begin_plain(run, tasks, q);
         if (model) status = sc_question_choose(model, &q->plain.options);
-        q->plain.has_last = model && q->plain.options.method == SC_METHOD_SCTT;
+        q->plain.has_last = model && !sc_model_is_for_boxes(model);
     }
     q->query->keeps = 1;
     return status;

@@ -59,7 +59,7 @@ enum { PARTS_OF_ONE = SC_PATCHES_CHILDREN + 2 * SC_NODE_CHILDREN };
 typedef struct plan {
     sc_workspace *workspace;
     sc_plan_room *room;
-    sc_worker *w; /* the first of them, who plans, and has the sums in the end */
+    sc_worker *w;          /* the first of them, who plans, and has the sums in the end */
     const sc_tasks *tasks; /* of two workers or more, or NULL: of one */
     uint32_t workers;
     sc_share share;
@@ -442,7 +442,6 @@ static void walk_exact(plan *p)
     }
     do_parts(p);
     do_selfs(p);
-    do_alone(p);
 }
 
 static void walk_stars(plan *p)
@@ -613,7 +612,7 @@ static int find_pairs(sc_workspace *workspace, sc_worker *worker, const sc_tasks
         p->question.filter = &p->filter;
     }
     begin_workers(p);
-    if (o->method == SC_METHOD_SCTT) make_cones(p->w);
+    if (p->question.has_last) make_cones(p->w);
     if (o->method == SC_METHOD_AABB) /* as of two objects always */
         walk_boxes(p);
     else if (o->method == SC_METHOD_AABB_SCTT)
@@ -622,6 +621,7 @@ static int find_pairs(sc_workspace *workspace, sc_worker *worker, const sc_tasks
         walk_exact(p);
     else
         walk_stars(p);
+    if (p->question.has_last) do_alone(p);
     p->w->question = question;
     return gather(p);
 }

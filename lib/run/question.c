@@ -141,7 +141,7 @@ sc_status sc_question_read(const sc_model *model, const sc_workspace *workspace,
     question->timed = result->stats != NULL;
     question->ends_early = o->output == SC_OUTPUT_ANY || o->budget != 0;
     question->test = sc_simple_tests;
-    question->has_last = o->method == SC_METHOD_SCTT && o->contour == SC_CONTOUR_EXACT;
+    question->has_last = !sc_model_is_for_boxes(model);
     status = sc_question_read_tasks(workspace, &o->tasks, &asked->tasks);
     if (!status && o->filter)
         status = sc_filter_begin(question, hooks, model, o->filter, &asked->filter);
