@@ -165,40 +165,34 @@ static uint32_t sort_chain(uint32_t edge[][2], uint32_t edges)
     return count;
 }
 
-/* Outlines of leaf clusters: each edge that no opposite one makes up for once, in a circle, if
-   there is one that comes to no point twice; or in two. */
+/* Outlines of leaf clusters: each edge that no opposite one makes up for once, if these are two
+   circles that come to no point twice. */
 static void check_outlines(const structures *s, const sc_model *model)
 {
     uint32_t leaf, h, i, wrong = 0;
     for (leaf = 0; leaf < model->leaf_count; ++leaf) {
         const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * leaf;
         const uint8_t *outline = sc_model_leaf_outline(model) + SC_LEAF_POINTS * leaf;
-        uint32_t last = outline[SC_LEAF_POINTS - 1], edge[3 * SC_LEAF_MAX][2], found = 0;
+        uint32_t edge[3 * SC_LEAF_MAX][2], found = 0, of_first = ~0u;
         uint32_t edges = list_outline(model, leaf, edge),
                  chain = edges ? sort_chain(edge, edges) : 0;
         uint32_t second = chain < edges ? sort_chain(edge + chain, edges - chain) : 0;
-        uint32_t count = last < SC_LEAF_POINTS ? SC_LEAF_POINTS : last - SC_LEAF_POINTS;
-        if (last & SC_OUTLINE_TWO) {
-            uint32_t of_first = ~0u;
-            for (i = 0; i < SC_LEAF_POINTS; ++i) {
-                uint32_t is_second = (outline[i] & SC_OUTLINE_SECOND) != 0;
-                if (outline[i] & SC_OUTLINE_NOWHERE) continue;
-                for (h = 0; h < edges; ++h)
-                    if (edge[h][0] == point[i] && edge[h][1] == point[outline[i] & 15]) {
-                        if (of_first == ~0u) of_first = (h < chain) ^ is_second;
-                        wrong += ((h < chain) ^ is_second) != of_first;
-                        ++found;
-                    }
-            }
-            wrong += !second || chain + second != edges || found != edges;
+        if (!(outline[SC_LEAF_POINTS - 1] & SC_OUTLINE_TWO)) {
+            for (i = 0; i < SC_LEAF_POINTS; ++i) wrong += outline[i] != 0;
+            wrong += second && chain + second == edges;
             continue;
         }
-        for (i = 0; i < count; ++i) {
-            uint32_t from = point[outline[i]], to = point[outline[i + 1 < count ? i + 1 : 0]];
-            for (h = 0; h < edges; ++h) found += edge[h][0] == from && edge[h][1] == to;
+        for (i = 0; i < SC_LEAF_POINTS; ++i) {
+            uint32_t is_second = (outline[i] & SC_OUTLINE_SECOND) != 0;
+            if (outline[i] & SC_OUTLINE_NOWHERE) continue;
+            for (h = 0; h < edges; ++h)
+                if (edge[h][0] == point[i] && edge[h][1] == point[outline[i] & 15]) {
+                    if (of_first == ~0u) of_first = (h < chain) ^ is_second;
+                    wrong += ((h < chain) ^ is_second) != of_first;
+                    ++found;
+                }
         }
-        wrong += edges && chain == edges ? found != edges || count != edges : count != 0;
-        wrong += second && chain + second == edges;
+        wrong += !second || chain + second != edges || found != edges;
     }
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " outlines of leaf clusters wrong", s->name, wrong);
 }

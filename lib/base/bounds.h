@@ -113,13 +113,8 @@ static inline float sc_bounds_contour(float size)
     return 3.01e-8f + 4.1f * SC_BOUNDS_V * size;
 }
 
-/* What a coordinate in a projection of one leaf cluster is off by, as query/outline_kernel.h has
-   it, over |c|1, where no point is further than this from the middle; and in cylinder coordinates,
-   as query/tube_kernel.h has them. */
-static inline float sc_bounds_outline(float most)
-{
-    return 3.1e-8f + 4e-7f * most;
-}
+/* What a coordinate of a leaf cluster is off by in cylinder coordinates, as query/tube_kernel.h has
+   them, where no point is further than this from the middle. */
 static inline float sc_bounds_tube(float reach)
 {
     return 9.2e-8f + 7.4e-7f * reach;

@@ -83,35 +83,33 @@ void sc_leaf_shapes_fans(const sc_model *m, const sc_tasks *tasks, uint16_t *fan
     sc_jobs_loop(tasks, m->leaf_count, SHAPES_LEAVES_MIN, find_fans, &job);
 }
 
-/* Follows a chain of edges until it begins again; returns how many points it has. */
-static uint32_t follow_chain(const uint32_t to[SC_LEAF_POINTS], uint32_t start,
-                             uint8_t outline[SC_LEAF_POINTS])
+/* Follows a chain of edges until it begins again: its points. Returns how many edges it has. */
+static uint32_t follow_chain(const uint32_t to[SC_LEAF_POINTS], uint32_t start, uint32_t *points)
 {
     uint32_t at = start, count = 0;
+    *points = 0;
     do {
-        outline[count++] = (uint8_t)at;
+        *points |= 1u << at;
         at = sc_bits_lowest(to[at]);
+        count++;
     } while (at != start);
     return count;
 }
 
-/* Writes an outline of two chains, if it is such; the first has so many points. */
-static void write_two_chains(const uint32_t to[SC_LEAF_POINTS], uint32_t edges, uint32_t first,
+/* Writes an outline of two chains, one of which begins here, if it is such. */
+static void write_two_chains(const uint32_t to[SC_LEAF_POINTS], uint32_t edges, uint32_t start,
                              uint8_t outline[SC_LEAF_POINTS])
 {
-    uint8_t second[SC_LEAF_POINTS];
-    uint32_t in_first = 0, count, start = 0, i;
-    for (i = 0; i < first; i++) in_first |= 1u << outline[i];
+    uint32_t first, second, i;
+    const uint32_t count = follow_chain(to, start, &first);
+    if (count == edges) return;
     for (i = 0; i < SC_LEAF_POINTS; i++)
-        if (to[i] && !(in_first >> i & 1u)) start = i;
-    count = follow_chain(to, start, second);
-    memset(outline, 0, SC_LEAF_POINTS);
-    outline[SC_LEAF_POINTS - 1] = SC_LEAF_POINTS;
-    if (first + count != edges) return;
-    for (i = 0; i < SC_LEAF_POINTS; i++) outline[i] = (uint8_t)(i | SC_OUTLINE_NOWHERE);
+        if (to[i] && !(first >> i & 1u)) start = i;
+    if (count + follow_chain(to, start, &second) != edges) return;
     for (i = 0; i < SC_LEAF_POINTS; i++)
-        if (to[i]) outline[i] = (uint8_t)sc_bits_lowest(to[i]);
-    for (i = 0; i < count; i++) outline[second[i]] |= SC_OUTLINE_SECOND;
+        outline[i] =
+            (uint8_t)(!to[i] ? i | SC_OUTLINE_NOWHERE
+                             : sc_bits_lowest(to[i]) | (second >> i & 1u ? SC_OUTLINE_SECOND : 0u));
     outline[SC_LEAF_POINTS - 1] |= SC_OUTLINE_TWO;
 }
 
@@ -126,7 +124,7 @@ static void find_outlines(void *context, uint32_t part, uint32_t leaf, uint32_t 
     (void)part;
     for (; leaf < end_leaf; leaf++, where += 3 * SC_LEAF_MAX, outline += SC_LEAF_POINTS) {
         uint32_t to[SC_LEAF_POINTS] = {0}, back[SC_LEAF_POINTS] = {0};
-        uint32_t edges = 0, start = 0, count = 0;
+        uint32_t edges = 0, start = 0;
         int is_chain = 1;
         for (i = 0; i < first[leaf + 1] - first[leaf]; i++)
             for (k = 0; k < 3; k++) {
@@ -143,11 +141,7 @@ static void find_outlines(void *context, uint32_t part, uint32_t leaf, uint32_t 
             start = to[i] ? i : start;
         }
         memset(outline, 0, SC_LEAF_POINTS);
-        if (is_chain && edges) count = follow_chain(to, start, outline);
-        if (is_chain && count != edges)
-            write_two_chains(to, edges, count, outline);
-        else if (count < SC_LEAF_POINTS)
-            outline[SC_LEAF_POINTS - 1] = (uint8_t)(SC_LEAF_POINTS + count);
+        if (is_chain && edges) write_two_chains(to, edges, start, outline);
     }
 }
 

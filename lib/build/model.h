@@ -109,11 +109,9 @@ enum sc_outline_bit { SC_OUTLINE_SECOND = 16, SC_OUTLINE_TWO = 32, SC_OUTLINE_NO
  *   leaf_fan        two sets of places in leaf_point a cluster: points round which its triangles
  *                   follow each other, one beginning where the one before ends; first those where
  *                   all of them are a closed fan, then the others
- *   leaf_outline    SC_LEAF_POINTS a cluster: places in leaf_point of the points round its outline,
- *                   counter-clockwise, if that is one closed chain that comes to no point twice,
- *                   else of none; if there are n < SC_LEAF_POINTS, zeros follow, and SC_LEAF_POINTS
- *                   + n is the last number. If it is two such chains, as of a tube, for each place
- *                   the one that follows it there, and what sc_outline_bit names
+ *   leaf_outline    SC_LEAF_POINTS a cluster: if its outline is two closed chains of edges that
+ *                   come to no point twice, as of a tube, for each place in leaf_point the one that
+ *                   follows it there, and what sc_outline_bit names; else zeros
  *   share_...       see build/sharing.h, share_own_rows are folded; share_begin, share_list:
  *                   build/sharing_lists.h
  *   share_touch     of two leaf clusters that share one point, SC_TOUCHES and where they have it;

@@ -101,18 +101,15 @@ static int check_corners(const sc_model *m)
     return !bad;
 }
 
-/* Whether outlines are of places. */
+/* Whether outlines of two chains are of places. */
 static int check_outlines(const sc_model *m)
 {
     const uint8_t *outline = sc_model_leaf_outline(m);
     uint32_t bad = 0;
     uint64_t i;
     for (i = 0; i < SC_LEAF_POINTS * (uint64_t)m->leaf_count; i++) {
-        const uint64_t last = i | (SC_LEAF_POINTS - 1);
-        const uint32_t end = outline[last] & SC_OUTLINE_TWO ? 2 * SC_OUTLINE_NOWHERE
-                             : i == last                    ? 2 * SC_LEAF_POINTS
-                                                            : SC_LEAF_POINTS;
-        bad |= outline[i] >= end;
+        const uint8_t last = outline[i | (SC_LEAF_POINTS - 1)];
+        bad |= outline[i] >= (last & SC_OUTLINE_TWO ? 2 * SC_OUTLINE_NOWHERE : SC_LEAF_POINTS);
     }
     return !bad;
 }

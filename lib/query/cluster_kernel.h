@@ -105,13 +105,11 @@ static SC_NOINLINE void part_near(sc_worker *w, uint32_t most)
     if (has_cones) drop_certified(w, pairs, count);
     for (i = 0; i < count; i++) {
         const sc_cluster_pair p = pairs[i];
-        unsigned drops = p.known & SC_CLUSTERS_DROPPED;
-        if (p.a == p.b) drops |= (unsigned)is_certified(w, p.a);
         sc_fetch(w->kept.known + derived_place(w, p.a));
         sc_fetch(w->kept.known + derived_place(w, p.b));
         sc_fetch(begin + (p.a == p.b ? 0 : p.shared));
         pairs[kept] = p;
-        kept += !drops;
+        kept += !(p.known & SC_CLUSTERS_DROPPED);
     }
     l->count[SC_LIST_CLUSTERS] += kept;
 }

@@ -42,7 +42,6 @@
 #include "query/derived_kernel.h"
 #include "query/neighbor_kernel.h"
 #include "query/fan_kernel.h"
-#include "query/outline_kernel.h"
 #include "query/touch_kernel.h"
 #include "query/short_kernel.h"
 #include "query/tube_kernel.h"
