@@ -26,8 +26,8 @@
  * rounding, e is off by v |e|1 times what it is multiplied with, and either product by 3.01 v |e|1
  * 1.01 D; to add a bound to one takes v (1.02 |e|1 D + bound). As |q - p|1 <= 4.04 D, all is below
  * d (4 |e|1 + 8.1 D + 8.1 d); what underflows is within a few FLT_MIN. All of this holds of e . q,
- * too, compared with e at its ends: its two products have the same factors. There twice the bound is
- * added, of which the second half is more than what rounding takes from it.
+ * too, compared with e at its ends: its two products have the same factors. There twice the bound
+ * is added, of which the second half is more than what rounding takes from it.
  */
 
 /* Points of a contour that is looked at, at most; edges of one of which all are compared; pairs of
@@ -204,8 +204,8 @@ static SC_INLINE lanes room_between(const short_points *c, const short_edges *e,
     return room;
 }
 
-/* The same along edges in place of across: above 0 where each certainly lies behind or ahead of that
-   so many further on, or that one of it. */
+/* The same along edges in place of across: above 0 where each certainly lies behind or ahead of
+   that so many further on, or that one of it. */
 static SC_INLINE lanes room_along(const short_points *c, const short_edges *e, unsigned on)
 {
     lanes room = lanes_all(-INFINITY);
