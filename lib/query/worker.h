@@ -30,9 +30,9 @@ typedef struct sc_question {
     const sc_filter *filter; /* or NULL; what follows comes from it */
     int sifts;           /* it has groups, which drop pairs of triangles before they are tested */
     int drops_neighbors; /* of triangles that share a vertex nothing is wanted */
-    int has_last; /* leaf clusters by themselves wait until all else is done, as contours of two
+    int has_last;   /* leaf clusters by themselves wait until all else is done, as contours of two
                      tell of most that nothing in them meets; the frame has normal cones of them */
-    int timed;    /* statistics are wanted: clocks are read */
+    int timed;      /* statistics are wanted: clocks are read */
     int ends_early; /* the first pair or a budget may end it: pairs do not wait for long */
     /* The contour test of some nodes: passed[i] says whether nothing in nodes[i] can meet. */
     void (*test)(struct sc_worker *w, const uint32_t *nodes, uint32_t count, uint8_t *passed);
