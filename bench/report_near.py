@@ -27,14 +27,26 @@ BULK = 50000
 CLOTHS = ("twisted-cloth", "cloth-sphere", "wrinkled-cloth", "crushed-cloth")
 
 
+# Where a run has these alone, they are taken from it, as bench/run_bench.sh says why.
+ALONE = {"near", "near-count", "near-boxes"}
+
+
 def collect(runs):
     """runs: description and records of each run of sc-bench --pairs near."""
+    def asked(d):
+        return d["scene"], d["triangles"], d["workers"], d["distance_edges"], d["ignore_rings"]
+
+    def is_alone(records):
+        return {r["method"] for r in records} == ALONE
+
+    alone = {asked(d) for d, records in runs if is_alone(records)}
     return [{"scene": d["scene"], "triangles": d["triangles"], "partition": d["partition"], "workers": d["workers"],
              "edges": d["distance_edges"], "ignore_rings": d["ignore_rings"], "frame": r["frame"],
              "method": r["method"], "ms": r["ms"], "ms_min": r["ms_min"], "pairs": r["pairs"],
              "missed": r["missed"], "extra": r["extra"], "cpu_share": d["cpu_share"],
              "ms_max": r.get("ms_max")} for d, r in
-            ((d, r) for d, records in runs for r in records)]
+            ((d, r) for d, records in runs for r in records
+             if is_alone(records) or r["method"] not in ALONE or asked(d) not in alone)]
 
 
 def total(rows, key):
