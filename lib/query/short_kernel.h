@@ -80,7 +80,7 @@ static inline lanes place_of(lanes e_x, lanes e_y, lanes q_x, lanes q_y)
 }
 
 /* How far along the edges: e . q. */
-static inline lanes along(lanes e_x, lanes e_y, lanes q_x, lanes q_y)
+static inline lanes place_along(lanes e_x, lanes e_y, lanes q_x, lanes q_y)
 {
     return lanes_add(lanes_multiply(e_x, q_x), lanes_multiply(e_y, q_y));
 }
@@ -215,10 +215,11 @@ static SC_INLINE lanes room_along(const short_points *c, const short_edges *e, u
         const unsigned own = s ? on : 0, other = s ? 0 : on;
         const lanes x = lanes_load(e->x + own), y = lanes_load(e->y + own);
         const lanes bound = lanes_subtract(lanes_load(e->to + own), lanes_load(e->from + own));
-        const lanes begin = along(x, y, lanes_load(c->x + own), lanes_load(c->y + own));
-        const lanes end = along(x, y, lanes_load(c->x + own + 1), lanes_load(c->y + own + 1));
-        const lanes p = along(x, y, lanes_load(c->x + other), lanes_load(c->y + other));
-        const lanes q = along(x, y, lanes_load(c->x + other + 1), lanes_load(c->y + other + 1));
+        const lanes begin = place_along(x, y, lanes_load(c->x + own), lanes_load(c->y + own));
+        const lanes end = place_along(x, y, lanes_load(c->x + own + 1), lanes_load(c->y + own + 1));
+        const lanes p = place_along(x, y, lanes_load(c->x + other), lanes_load(c->y + other));
+        const lanes q =
+            place_along(x, y, lanes_load(c->x + other + 1), lanes_load(c->y + other + 1));
         room = lanes_larger(room, lanes_subtract(lanes_smaller(p, q), lanes_add(end, bound)));
         room = lanes_larger(room, lanes_subtract(lanes_subtract(begin, bound), lanes_larger(p, q)));
     }
