@@ -32,10 +32,10 @@ enum { MEASURE_ONCE = 0, MEASURE_WARM = 1 };
 typedef struct measure_options {
     method_question question;
     uint32_t mode, repeats, partition, threads; /* partition: BENCH_... of bench_model.h */
-    uint32_t
-        workers; /* threads of each query, which are those of query_threads.h; 1 with several threads */
-    bool count_near; /* whether records are to have near */
-    double edges;    /* of METHOD_NEAR: the distance, in median edges of the first frame. That of
+    uint32_t workers; /* threads of each query, which are those of query_threads.h; 1 with several
+                         threads */
+    bool count_near;  /* whether records are to have near */
+    double edges;     /* of METHOD_NEAR: the distance, in median edges of the first frame. That of
                         question is not read */
 } measure_options;
 

@@ -19,8 +19,9 @@ typedef struct one_shot_options {
  * Of the first frame, with each of the methods, which are queries of the library; aabb with a model
  * for boxes alone, as for a mesh that is asked about once. Prints a JSON object a line and method,
  * with
- *     build_ms, workspace_ms, query_ms, total_ms              total_ms is the median of sums, freeing included
- *     pairs, model_bytes, workspace_bytes, peak_bytes         peak_bytes: while it was built
+ *     build_ms, workspace_ms, query_ms, total_ms         total_ms is the median of sums, freeing
+ *                                                        included
+ *     pairs, model_bytes, workspace_bytes, peak_bytes    peak_bytes: while it was built
  * or, with json false, a table. On failure false, with a message in error.
  */
 bool one_shot_run(scene_folder *scene, const char *name, const method_kind *const *methods,

@@ -9,7 +9,8 @@
  * and method. Both have the same names:
  *     ms, ms_min                       median and minimum of the repeats
  *     pairs, missed, extra             found; of the complete set not found; found but not in it
- *     candidates, candidates_ms        of steps: pairs left by culling, and the time of a query for these alone
+ *     candidates, candidates_ms        of steps: pairs left by culling, and the time of a query for
+ *                                      these alone
  *     times_floor                      ms as a multiple of the physical floor (floor.h)
  *     update_boxes_ms ... primitives_contour_ms    the nine tasks, from a query that is not in ms
  *     cpu_share (first line)           processor time by wall time of timed queries, see measure.h

@@ -6,8 +6,8 @@
 # FOLDER is where results go; by default bench/results/<machine>, and the overview into README.md,
 # or, for quick, build/bench-quick. report measures nothing and makes the report anew from the CSV
 # files. What sc-bench prints is kept in build/bench/. Peers come from build/peers/peers.csv,
-# near.csv, trace.csv, objects.csv, dataset.csv and wasm.csv, if they are there. From make come SC_BIN
-# and PYTHON, the interpreter that draws.
+# near.csv, trace.csv, objects.csv, dataset.csv and wasm.csv, if they are there. From make come
+# SC_BIN and PYTHON, the interpreter that draws.
 #
 # Exit status 1 if methods disagree or no report could be made, 2 if nothing could be started.
 #
@@ -31,8 +31,8 @@ near_sets=$(echo "$sets" | sed 's/exact/near/g; s/aabb/near-boxes/g')
 # default build, with the built-in partition; pairs of an edge and a triangle, as in the paper. The
 # other runs compare partitions (METIS, and the order that the maker of a cloth knows), resolutions,
 # kinds of pairs, threads, and repeated queries with single ones; instructions and threads of one
-# query; heavy contact, on the frames that peers get; single queries from nothing; steps; and what is
-# near, at distances from a twentieth of an edge to two edges.
+# query; heavy contact, on the frames that peers get; single queries from nothing; steps; and what
+# is near, at distances from a twentieth of an edge to two edges.
 full="\
 twisted-cloth 4096 60 3 fast edge -
 twisted-cloth 16384 60 3 fast edge -

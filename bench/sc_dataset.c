@@ -188,7 +188,8 @@ static bool same(const sc_result *a, const sc_result *b)
            memcmp(a->pairs, b->pairs, sizeof(sc_pair) * a->count) == 0;
 }
 
-/* Whether sc_query alone says the same of a pose of the chunk, by the default method and by boxes. */
+/* Whether sc_query alone says the same of a pose of the chunk, by the default method and by
+   boxes. */
 static bool alone(run *r, uint32_t k)
 {
     const uint32_t methods[] = {SC_METHOD_DEFAULT, SC_METHOD_AABB};

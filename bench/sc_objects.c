@@ -17,8 +17,8 @@
  * Ways, one after the other in each frame, of which the least time counts; the time of a scene is
  * the sum over its frames divided by their number:
  *   objects  one call about all objects; the version of what does not move stays
- *   cut      the same, where something does not move: of it no more than the triangles that come near
- *            what moves, in any frame
+ *   cut      the same, where something does not move: of it no more than the triangles that come
+ *            near what moves, in any frame
  *   merged   one mesh of all of them; where something is not asked about itself, groups of vertices
  *            leave its own pairs out
  *   alone    each that is asked about itself by itself, in a call of its own
@@ -27,9 +27,9 @@
  * could not be done.
  *
  * With --export nothing is timed: scenes are written for others to be timed on (bench/peers), each
- * as a folder with a file objects.txt. It has a line "FOLDER ITSELF" for each object: a scene folder
- * (scene_folder.h) in it, of one frame if the object does not move, and whether it is asked about
- * itself, 1 or 0.
+ * as a folder with a file objects.txt. It has a line "FOLDER ITSELF" for each object: a scene
+ * folder (scene_folder.h) in it, of one frame if the object does not move, and whether it is asked
+ * about itself, 1 or 0.
  */
 #include "scene_folder.h"
 #include "thread_pool.h"
@@ -150,8 +150,8 @@ static bool make_cloth(part *p, uint32_t n)
     return true;
 }
 
-/* A torus round the z axis, of about so many triangles as square as cells can be: of radius 0.7, and
-   0.3 thick on each side. */
+/* A torus round the z axis, of about so many triangles as square as cells can be: of radius 0.7,
+   and 0.3 thick on each side. */
 static bool make_torus(part *p, double triangles)
 {
     const uint32_t around = (uint32_t)sqrt(triangles / 2 * 7 / 3), n = around * 3 / 7;
@@ -592,7 +592,8 @@ static sc_status ask_objects(const run *r, scene *s, int question, int way, uint
     return status;
 }
 
-/* Asks in one way, again with more room if that was too little; *ms is the time of the last time. */
+/* Asks in one way, again with more room if that was too little; *ms is the time of the last
+   time. */
 static bool ask(const run *r, scene *s, int question, int way, uint64_t version, double *ms,
                 uint64_t *count)
 {

@@ -541,8 +541,8 @@ typedef struct sc_workspace_options {
  * The same three for a workspace of any kind; options may be NULL, then they are the same. Such a
  * workspace also serves plain queries. Each worker but the first takes about 12 bytes a vertex and
  * 130 kilobytes more, the second some 100 kilobytes besides. SC_ERROR_OPTION: unknown flags, too
- * many workers, reserved is not 0, or flags or workers are not those of the room; SC_ERROR_WORKSPACE:
- * the room is of another model.
+ * many workers, reserved is not 0, or flags or workers are not those of the room;
+ * SC_ERROR_WORKSPACE: the room is of another model.
  */
 SC_API sc_status sc_workspace_size_for(const sc_model *model, const sc_workspace_options *options,
                                        uint64_t *size);
@@ -1006,8 +1006,8 @@ typedef struct sc_triples_result {
  * through one point are four such points, of each three.
  *
  * Ties are decided as those of contours are, and what is found fits these: a closed contour passes
- * an even number of times through a closed component that it is not on. Equal or coplanar sheets may have such points
- * or none. Three triangles that share a vertex have none there.
+ * an even number of times through a closed component that it is not on. Equal or coplanar sheets
+ * may have such points or none. Three triangles that share a vertex have none there.
  *
  * along is off by at most 2^-38, but where ties were decided it is somewhere on the segment: in its
  * middle if all of it is in the third triangle's plane. point is the mean of the ends of the

@@ -1,12 +1,12 @@
 #!/bin/sh
-# Gets real meshes into build/meshes, without root: the models of Debian's glmark2-data and the meshes
-# in the data archive of libcgal-demo, as they are, and the former subdivided. With --models also, in
-# build/meshes/models, all models of glmark2-data and of assimp-testmodels, some of them damaged on
-# purpose. What is there already is kept; remove build/meshes to start again.
+# Gets real meshes into build/meshes, without root: the models of Debian's glmark2-data and the
+# meshes in the data archive of libcgal-demo, as they are, and the former subdivided. With --models
+# also, in build/meshes/models, all models of glmark2-data and of assimp-testmodels, some of them
+# damaged on purpose. What is there already is kept; remove build/meshes to start again.
 #
 # SPDX-License-Identifier: MIT
 #
-# Usage: meshes/fetch.sh [--models] [FOLDER [SUBDIVIDE]]     default: build/meshes build/bin/subdivide
+# Usage: meshes/fetch.sh [--models] [FOLDER [SUBDIVIDE]]   default: build/meshes build/bin/subdivide
 # Exit status: 0 all is there, 1 something could not be had (the rest is still done).
 set -u
 

@@ -77,7 +77,8 @@ double near_truth_distance(const step_motion *m, int kind, sc_pair pair);
 /* A pair without a common vertex, drawn at random; 0 if none was found. */
 int near_truth_draw(const step_motion *m, int kind, sc_pair *pair);
 
-/* Whether what was found is the truth: fails a check for the first pair that is lost or too many. */
+/* Whether what was found is the truth: fails a check for the first pair that is lost or too
+   many. */
 void near_truth_check(const near_question *q, const step_motion *m, const near_answer *a,
                       double distance, const char *what);
 

@@ -38,21 +38,21 @@ typedef struct scene {
     uint64_t state; /* of random numbers, to make it again */
 } scene;
 
-/* Up to so many objects of up to so many triangles; 0: a model or workspace is not there, and a check
-   has failed. */
+/* Up to so many objects of up to so many triangles; 0: a model or workspace is not there, and a
+   check has failed. */
 int scene_open(scene *s, uint32_t most, uint32_t maximum, uint32_t workers, uint32_t flags);
 void scene_close(scene *s);
 
-/* Object i, the next one: of a random mesh, of a mesh that it takes over, or (NULL) of the mesh and the
-   model of the one before it. */
+/* Object i, the next one: of a random mesh, of a mesh that it takes over, or (NULL) of the mesh and
+   the model of the one before it. */
 int scene_open_thing(scene *s, uint32_t i, uint32_t maximum);
 int scene_open_thing_of(scene *s, uint32_t i, const soup *mesh);
 
 /* Has all asked in new workspaces. 0: one is not there, and a check has failed. */
 int scene_renew_work(scene *s);
 
-/* Poses an object near the others, often on a grid or in the place of another one; and for the end of
-   a step some way from there. */
+/* Poses an object near the others, often on a grid or in the place of another one; and for the end
+   of a step some way from there. */
 void scene_pose_thing(scene *s, uint32_t i);
 
 /* Whether groups let two collide, or each object `itself`. */

@@ -1,6 +1,7 @@
 /*
  * One mesh and pose, asked in all ways: pairs of triangles, vertices and edges, by every method and
- * any of the machine's instruction sets, against the oracle. For test_pairs.c and test_flat_pairs.c.
+ * any of the machine's instruction sets, against the oracle. For test_pairs.c and
+ * test_flat_pairs.c.
  *
  * SPDX-License-Identifier: MIT
  */

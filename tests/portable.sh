@@ -1,5 +1,6 @@
 # Sourced, after script.sh, by those of tests/packages/ that build tests for other systems, where
-# there is C and the library (with partition_metis.c, without METIS), and neither GMP nor libccd nor POSIX:
+# there is C and the library (with partition_metis.c, without METIS), and neither GMP nor libccd nor
+# POSIX:
 #
 #     $portable_tests          the tests, NAME of tests/test_NAME.c; the longest first
 #     $portable_support        C files that they are linked with, as an archive
@@ -9,7 +10,8 @@
 #     tool NAME                where clang has that program, else PATH
 #     layouts_hold WHERE COMMAND...    two checks: that structures, enumerators and calls are those of
 #                              tests/abi on 64 bits, by a command that compiles a C file without
-#                              writing anything, and that others are noticed; WHERE begins their names
+#                              writing anything, and that others are noticed; WHERE begins their
+#                              names
 #
 # SPDX-License-Identifier: MIT
 portable_tests='forged_models arguments base feature_records filters flattening hooks lanes near_input

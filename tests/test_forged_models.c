@@ -764,8 +764,9 @@ static void workspaces_and_forged_hashes(void)
     soup_free(&large);
 }
 
-/* A model in place of another one, loaded in the same memory: masks of that one are refused, whether
-   the new one has other triangles, as many leaf clusters or more, or only claims to have the same. */
+/* A model in place of another one, loaded in the same memory: masks of that one are refused,
+   whether the new one has other triangles, as many leaf clusters or more, or only claims to have
+   the same. */
 static void masks_and_forged_hashes(void)
 {
     soup mesh[3] = {soup_cloth(8, 8), soup_cloth(20, 20), soup_cloth(8, 8)};

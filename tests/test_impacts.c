@@ -534,8 +534,8 @@ static void slivers_nearly_at_rest(void)
 }
 
 /* Coordinates that are a few times the smallest double there is. */
-/* Two edges that come so near to each other for so long that the search looks ahead at as many times
-   as it has room for. */
+/* Two edges that come so near to each other for so long that the search looks ahead at as many
+   times as it has room for. */
 static void as_many_guards_as_there_are(void)
 {
     static const query edges = {

@@ -1,10 +1,11 @@
 /*
  * The promise of proximity: on every mesh, pose, type, stride, welding and partition, for every
- * distance, sc_query_near reports the vertex-face and edge-edge pairs that exact arithmetic says are
- * within it, and no other; by every method, instruction set and number of workers.
+ * distance, sc_query_near reports the vertex-face and edge-edge pairs that exact arithmetic says
+ * are within it, and no other; by every method, instruction set and number of workers.
  *
- * All pairs of small meshes are decided by near_oracle.h, for distances that some pair has to within
- * a unit in the last place. What is refused: test_near_input.c; many workers: test_near_tasks.c.
+ * All pairs of small meshes are decided by near_oracle.h, for distances that some pair has to
+ * within a unit in the last place. What is refused: test_near_input.c; many workers:
+ * test_near_tasks.c.
  *
  * SPDX-License-Identifier: MIT
  */

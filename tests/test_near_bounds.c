@@ -1,7 +1,7 @@
 /*
  * The certificates of distances in floats (lib/near/distance_kernel.h) are right with the bound of
- * lib/base/bounds.h, and not with half of it: attacks by pairs of which all points are off as far as
- * points may be, towards each other or apart, at a distance next to theirs.
+ * lib/base/bounds.h, and not with half of it: attacks by pairs of which all points are off as far
+ * as points may be, towards each other or apart, at a distance next to theirs.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -360,8 +360,8 @@ static void masks_and_bounds(void)
     end(&c);
 }
 
-/* Without options: those that touch, of both kinds. Without arrays: numbers and an error. Workspaces
-   for this serve queries and steps as well. */
+/* Without options: those that touch, of both kinds. Without arrays: numbers and an error.
+   Workspaces for this serve queries and steps as well. */
 static void what_may_be_left_out(void)
 {
     near_call c;

@@ -1,6 +1,6 @@
 #!/bin/sh
-# sc-query --near: what it finds, against all pairs one by one in exact fractions; what it prints and
-# writes, the exit status, and what it refuses.
+# sc-query --near: what it finds, against all pairs one by one in exact fractions; what it prints
+# and writes, the exit status, and what it refuses.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

@@ -1,6 +1,6 @@
 /*
- * Several objects in one query: the same pairs as one mesh of all of them in which nothing of one is
- * welded to anything of another; whatever was kept from one call to the next, with tasks and
+ * Several objects in one query: the same pairs as one mesh of all of them in which nothing of one
+ * is welded to anything of another; whatever was kept from one call to the next, with tasks and
  * without. And what is refused.
  *
  * SPDX-License-Identifier: MIT

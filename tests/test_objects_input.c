@@ -1,7 +1,7 @@
 /*
- * What sc_query_objects, sc_query_objects_near and sc_query_objects_step refuse: each wrong argument
- * gets its error, and where it is an object's a message; counts are then 0, arrays as they were, and
- * the next answer is right.
+ * What sc_query_objects, sc_query_objects_near and sc_query_objects_step refuse: each wrong
+ * argument gets its error, and where it is an object's a message; counts are then 0, arrays as they
+ * were, and the next answer is right.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -1,6 +1,6 @@
 /*
- * Many objects, or several small ones, in one query: swept, and answered by several workers, each of
- * which does whole questions: the same answers bit for bit as by one, in the same order.
+ * Many objects, or several small ones, in one query: swept, and answered by several workers, each
+ * of which does whole questions: the same answers bit for bit as by one, in the same order.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -90,7 +90,8 @@ static int ask_workers(scene *s, const object_question *q, int way, uint32_t wor
     return 1;
 }
 
-/* One worker, two and five, with arrays that fit exactly, or are too short; and for counts alone. */
+/* One worker, two and five, with arrays that fit exactly, or are too short; and for counts
+   alone. */
 static void workers_say_the_same(scene *s, const object_question *asked_for, int way, int is_large)
 {
     static const uint32_t outputs[] = {SC_OUTPUT_PAIRS, SC_OUTPUT_COUNT, SC_OUTPUT_ANY};
@@ -479,8 +480,8 @@ static void check_crowd(crowd *c, const sc_tasks *tasks, uint64_t *ranges, uint6
     free(wanted.at);
 }
 
-/* Some of which come near more others than an object takes down. Their poses are read by one worker,
-   then, while the workspaces are for one, by two. */
+/* Some of which come near more others than an object takes down. Their poses are read by one
+   worker, then, while the workspaces are for one, by two. */
 static void thousands_are_swept(void)
 {
     uint64_t ranges = 0, most = 0;

@@ -1,7 +1,7 @@
 /*
- * What is near of several objects, and what collides in a step of them: the same pairs with the same
- * times as in one mesh of all of them; whatever was kept from one call to the next, with tasks and
- * without. And what is refused.
+ * What is near of several objects, and what collides in a step of them: the same pairs with the
+ * same times as in one mesh of all of them; whatever was kept from one call to the next, with tasks
+ * and without. And what is refused.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -311,8 +311,8 @@ static question any_question(void)
 
 /* ---- tests ---- */
 
-/* Random scenes; then some objects move, and the others keep what is known of them, for questions of
-   all kinds in turn. */
+/* Random scenes; then some objects move, and the others keep what is known of them, for questions
+   of all kinds in turn. */
 static void scenes_are_one_mesh(void)
 {
     uint64_t pairs = 0, between = 0, kept = 0;
@@ -402,8 +402,8 @@ static int open_large_thing(scene *s, uint32_t i, int is_cloth, uint32_t side)
     return 1;
 }
 
-/* Two objects of which each is worth a job, in workspaces that were never asked before; of which one
-   may be for fewer workers. */
+/* Two objects of which each is worth a job, in workspaces that were never asked before; of which
+   one may be for fewer workers. */
 static void large_objects_share_work(void)
 {
     uint64_t between = 0;

@@ -1,7 +1,7 @@
 #!/bin/sh
 # The page that sc-query --html writes, and its picture (--png): looked at in Chromium without a
-# window, by playwright-core, where both are there; and that tools/page/page.html is what its sources
-# give.
+# window, by playwright-core, where both are there; and that tools/page/page.html is what its
+# sources give.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh
@@ -13,8 +13,8 @@ if [ ! -x "$query" ]; then
     finish
 fi
 
-# Walls through a floor, a leaf through another, and one alone; then the same apart. Names that would end a script,
-# or hide one, if they were written as they are.
+# Walls through a floor, a leaf through another, and one alone; then the same apart. Names that
+# would end a script, or hide one, if they were written as they are.
 make_mesh() { # FILE HEIGHT
     cat >"$1" <<EOT
 o </script><b>odd
@@ -56,8 +56,8 @@ clean="$scratch/clean<!--<script>.obj"
 make_mesh "$hit" -1
 make_mesh "$clean" 2
 
-# Two spikes through a floor, of which two halves are joined, and a wall through it; and all below it:
-# for contours.
+# Two spikes through a floor, of which two halves are joined, and a wall through it; and all below
+# it: for contours.
 make_floor() { # FILE TOP-OF-SPIKE TOP-OF-WALL BOTTOM-OF-WALL
     cat >"$1" <<EOT
 v 0 0 0

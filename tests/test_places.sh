@@ -1,6 +1,6 @@
 #!/bin/sh
-# Places and defects by sc-query: pairs joined into places, with their objects, sizes and depths; the
-# defects that a checker of assets lists; the colours of --ply; and that --only leaves them out.
+# Places and defects by sc-query: pairs joined into places, with their objects, sizes and depths;
+# the defects that a checker of assets lists; the colours of --ply; and that --only leaves them out.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh
@@ -12,8 +12,8 @@ if [ ! -x "$query" ]; then
     finish
 fi
 
-# box NAME X Y Z SIDE [FLIP]: a closed box, oriented outwards, or inwards with FLIP. The first vertex
-# is number $first.
+# box NAME X Y Z SIDE [FLIP]: a closed box, oriented outwards, or inwards with FLIP. The first
+# vertex is number $first.
 box() {
     awk -v name="$1" -v x="$2" -v y="$3" -v z="$4" -v s="$5" -v flip="${6:-0}" -v first="$first" '
         BEGIN {
@@ -46,8 +46,8 @@ have_json=1
 
 # ---- places ----
 
-# Two boxes that overlap at a corner, by a quarter in each direction; two that are through each other
-# by a half in x, and one apart. The larger pair has the later numbers.
+# Two boxes that overlap at a corner, by a quarter in each direction; two that are through each
+# other by a half in x, and one apart. The larger pair has the later numbers.
 first=1
 {
     box far 90 0 0 1
@@ -222,7 +222,8 @@ agrees() { # FILE KIND
     "$query" --pairs "$2" --json --out "$scratch/pairs.csv" "$1" >"$scratch/json"
     test $? -le 1 && "$python" "$scratch/oracle.py" "$1" "$scratch/pairs.csv" "$scratch/json" "$2"
 }
-# soup SEED TRIANGLES GRID: triangles with corners on a grid, so that they touch, repeat and are flat.
+# soup SEED TRIANGLES GRID: triangles with corners on a grid, so that they touch, repeat and are
+# flat.
 soup() {
     awk -v seed="$1" -v n="$2" -v grid="$3" 'BEGIN { srand(seed)
         for (i = 0; i < 3 * n; i++) { if (i % 3 == 0) { x = int(rand() * grid); y = int(rand() * grid); z = int(rand() * grid) }
@@ -303,8 +304,8 @@ check "duplicate faces, also the other way round, of joined vertices" \
     line "$scratch/twice.obj" "duplicate faces 1; 1 of 1 parts closed"
 check "which are not where none are joined" sh -c \
     "'$query' --weld none '$scratch/twice.obj' | grep -q 'open edges 4; 0 of 1'"
-# Three points of a line; some that are nearly on one, or that differences in doubles would put there
-# or take away from it; and a face with a vertex twice.
+# Three points of a line; some that are nearly on one, or that differences in doubles would put
+# there or take away from it; and a face with a vertex twice.
 printf 'v 0.125 0.25 0.5\nv 0.25 0.5 1\nv 0.5 1 2\nf 1 2 3\n' >"$scratch/flat.obj"
 check "degenerate faces" line "$scratch/flat.obj" "open edges 3, degenerate faces 1; 0 of 1 parts closed"
 printf 'v 0 0 0\nv 1 1 1e-300\nv 3 3.0000000000000004 0\nf 1 2 3\nv 5 0 0\nv 6 1e-150 0\nv 7 0 0\nf 4 5 6\n' >"$scratch/nearly.obj"

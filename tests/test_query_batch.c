@@ -1,6 +1,6 @@
 /*
- * Many poses of one model in one call: each answer is that of a query by itself, whoever asks it and
- * whatever is wrong with others.
+ * Many poses of one model in one call: each answer is that of a query by itself, whoever asks it
+ * and whatever is wrong with others.
  *
  * SPDX-License-Identifier: MIT
  */

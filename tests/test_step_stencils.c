@@ -1,6 +1,6 @@
 /*
- * Pairs of a step at two times: closest points as sc_near_stencils has them, where the vertex began,
- * whether the two approach, and the normal between them; and what is refused.
+ * Pairs of a step at two times: closest points as sc_near_stencils has them, where the vertex
+ * began, whether the two approach, and the normal between them; and what is refused.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -233,8 +233,8 @@ static void distances_out_of_range(void)
 }
 
 /* A vertex far from a small face, as no double can say, both on a diagonal through the origin: the
-   normal is along it, also where they are near at the start. They approach as they change places, and
-   do not as they move on. */
+   normal is along it, also where they are near at the start. They approach as they change places,
+   and do not as they move on. */
 static void points_out_of_range(void)
 {
     const double far = 0x1.8p1023;
@@ -270,8 +270,8 @@ static void points_out_of_range(void)
 }
 
 /* Edges that cross at less than half of the smallest double, so that they touch: the normal is
-   across both, though it would not be so by products of rounded differences, as the edges are almost
-   parallel, or these are infinite. */
+   across both, though it would not be so by products of rounded differences, as the edges are
+   almost parallel, or these are infinite. */
 static void touching_edges_almost_parallel(void)
 {
     const double tiny = 0x1p-1074, far = 0x1.8p1023, u = 0x1p-54;
@@ -302,8 +302,8 @@ static void touching_edges_almost_parallel(void)
     sc_model_free(p.model);
 }
 
-/* Edges of a few of the smallest doubles, less than half of one apart: so the distance is 0, and the
-   normal that of both edges, of coordinates as whole numbers. */
+/* Edges of a few of the smallest doubles, less than half of one apart: so the distance is 0, and
+   the normal that of both edges, of coordinates as whole numbers. */
 static void edges_of_the_smallest_doubles(void)
 {
     uint32_t found = 0;

@@ -635,8 +635,8 @@ static void longest_loop(void)
     }
 }
 
-/* Pairs of positions that differ in one coordinate and have the same hash, found by trying a million
-   of each: only what is at the same position is welded. */
+/* Pairs of positions that differ in one coordinate and have the same hash, found by trying a
+   million of each: only what is at the same position is welded. */
 static void positions_of_one_hash(void)
 {
     static const double alike[3][2] = {{75280, 88139}, {355, 43085}, {126313 / 3.0, 787089 / 3.0}};

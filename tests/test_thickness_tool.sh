@@ -1,7 +1,7 @@
 #!/bin/sh
 # sc-query --near --thickness: plates of known thickness, gaps, folds and closed boxes; the
-# histogram, percentiles, JSON and colours; and what it refuses. tests/bench/test_thickness.c compares
-# single triangles with the definition.
+# histogram, percentiles, JSON and colours; and what it refuses. tests/bench/test_thickness.c
+# compares single triangles with the definition.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

@@ -274,7 +274,8 @@ static void measure_contour(mpf_t length, const scene *s, const sc_trace_contour
     if (contour->begin == SC_TRACE_CLOSED) add_distance(length, last, begin);
 }
 
-/* The derivative of a contour's length by a coordinate of a vertex. The scene's size: 2^exponent. */
+/* The derivative of a contour's length by a coordinate of a vertex. The scene's size:
+   2^exponent. */
 static double difference(const scene *s, const sc_trace_contour *contour, uint32_t moved, int c,
                          int exponent)
 {
@@ -662,8 +663,8 @@ static sc_status ask(small_scene *s)
     return sc_trace_gradients(s->model, &s->pose, &s->traced, s->gradients);
 }
 
-/* An edge so close to a line of a triangle that is all but a line that the product of all underflows,
-   though nothing is rounded. */
+/* An edge so close to a line of a triangle that is all but a line that the product of all
+   underflows, though nothing is rounded. */
 static void products_underflow(void)
 {
     static const double p[18] = {0,       0, 0, 1,      0, 0,        1, 0x1p-500, 0,

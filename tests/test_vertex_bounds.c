@@ -260,8 +260,8 @@ static void bounds_at_both_ends_of_the_range(void)
     CHECK_MSG(positive[0] > 0, "%" PRIu64 " huge bounds", positive[0]);
 }
 
-/* Two edges of triangles whose middles are a vector apart, at random across it; the third corners are
-   behind them. */
+/* Two edges of triangles whose middles are a vector apart, at random across it; the third corners
+   are behind them. */
 static double *draw_edges_apart(const double apart[3], double length)
 {
     double *posed = (double *)test_allocate(18 * sizeof(double));
@@ -364,8 +364,8 @@ static void bounds_of_the_largest_distances(void)
     CHECK(infinite > 0 && pairs > infinite);
 }
 
-/* Whoever finds them, with a function that is asked about either kind of pair, both or none; and what
-   is cancelled has none. */
+/* Whoever finds them, with a function that is asked about either kind of pair, both or none; and
+   what is cancelled has none. */
 static void bounds_by_many_workers(void)
 {
     static const volatile uint32_t set = 1;
@@ -460,7 +460,8 @@ static int intersects(const scene *s)
     return r.collides != 0;
 }
 
-/* Moves each vertex by nearly half its bound: anywhere, all to one point, or towards what is near. */
+/* Moves each vertex by nearly half its bound: anywhere, all to one point, or towards what is
+   near. */
 static void move_by_bounds(scene *s, const double *bounds, int way)
 {
     double to[3] = {test_random_range(-1, 1), test_random_range(-1, 1), test_random_range(-1, 1)};

@@ -22,8 +22,9 @@ int trace_oracle_sign(const double *const points[4], const uint32_t numbers[4]);
 int trace_oracle_crosses(const double *const points[5], const uint32_t numbers[5]);
 
 /* Whether that is where the edge crosses the triangle: weights off by at most 2^-49 of themselves,
-   coordinates by 2^-49 of the largest of the five points, or 2^-1070. Where edge and triangle are in a plane:
-   whether the points of edge and triangle that have these weights are the point, up to 2^-46. */
+   coordinates by 2^-49 of the largest of the five points, or 2^-1070. Where edge and triangle are
+   in a plane: whether the points of edge and triangle that have these weights are the point, up to
+   2^-46. */
 int trace_oracle_is_placed(const double *const points[5], double along, const double weights[3],
                            const double point[3]);
 

@@ -17,7 +17,8 @@ start_wine() {
         finish
     fi
     export WINEPREFIX="$scratch/wine" WINEDEBUG=-all
-    # The server stays for some seconds after a program ends; without it each would wait for a new one.
+    # The server stays for some seconds after a program ends; without it each would wait for a new
+    # one.
     trap '$(command -v wineserver || echo true) -k 2>/dev/null; rm -rf "$scratch"' EXIT
 }
 windows() {

@@ -4,11 +4,13 @@
 #     tools/check_layering.sh [DIRECTORY]      default: the directory above this script
 #
 #   - Folders include only what `may` below allows: lib/ in the order base, simd, build, pose,
-#     query, step, near, trace, run, and programs only the public headers. No "../", no circles, where a header
-#     and the C file of its name count as one, nothing that does not exist. In lib/simd,
-#     all_kernels.h and kernels_SET.c see all of lib/, as if they stood beside starcontour.c.
+#     query, step, near, trace, run, and programs only the public headers. No "../", no circles,
+#     where a header and the C file of its name count as one, nothing that does not exist. In
+#     lib/simd, all_kernels.h and kernels_SET.c see all of lib/, as if they stood beside
+#     starcontour.c.
 #   - The oracle of the tests reaches no header of lib/, however indirectly.
-#   - File names are unique (but README.md and CMakeLists.txt), and the top level holds only what belongs there.
+#   - File names are unique (but README.md and CMakeLists.txt), and the top level holds only what
+#   belongs there.
 #   - lib/sources.list names each C file in lib/ once, in the order of the layers.
 #   - What C files in lib/ keep to themselves has a name that no other one uses: all of them can be
 #     compiled as one (tools/amalgamate.awk). Seen are functions, constants, types and macros. What

@@ -20,8 +20,8 @@ typedef struct frame_paths {
  */
 bool frame_paths_find(frame_paths *found, const char *pattern, char error[MESH_FILE_ERROR_SIZE]);
 
-/* If a pattern is all that is given, puts the files that it finds in place of it, which last as long
-   as found; otherwise found is empty. */
+/* If a pattern is all that is given, puts the files that it finds in place of it, which last as
+   long as found; otherwise found is empty. */
 bool frame_paths_expand(frame_paths *found, char ***paths, int *count,
                         char error[MESH_FILE_ERROR_SIZE]);
 

@@ -3,7 +3,7 @@
 # folder .debug beside it, where gdb and others look for it by the link that stays in the stripped
 # file.
 #
-#     tools/install_binary.sh FILE        OBJCOPY: the program for it, from the environment [objcopy]
+#     tools/install_binary.sh FILE       OBJCOPY: the program for it, from the environment [objcopy]
 #
 # A static library only loses its debug symbols: they are in the one that was built. Where there is
 # no objcopy (OBJCOPY=''), or it cannot read the file (on macOS), the file stays as it is.

@@ -76,8 +76,8 @@ bool mesh_file_read(mesh_file *mesh, const char *path, char error[MESH_FILE_ERRO
 
 /*
  * A hash of the faces as read, before triangulation, the same in every run and on every machine.
- * It is made when the mesh is read, or, if all faces are triangles, anew with every call: keep it in
- * face_hash where several files are compared with one.
+ * It is made when the mesh is read, or, if all faces are triangles, anew with every call: keep it
+ * in face_hash where several files are compared with one.
  */
 uint64_t mesh_file_hash(const mesh_file *mesh);
 

@@ -23,8 +23,8 @@ enum { CELLS_MAX = 64 };
 
 enum { REGION_UNKNOWN = 0, REGION_EXPOSED = 1, REGION_BURIED = 2 };
 
-/* Items by the wanted cells of the grid that they reach over. Those of a cell are from starts[cell] up to
-   starts[cell + 1]; those that reach over very many come behind the last cell. */
+/* Items by the wanted cells of the grid that they reach over. Those of a cell are from starts[cell]
+   up to starts[cell + 1]; those that reach over very many come behind the last cell. */
 typedef struct cell_lists {
     uint32_t *starts, *items;
 } cell_lists;

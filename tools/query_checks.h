@@ -23,8 +23,8 @@ typedef struct query_checks {
     uint32_t degenerate_faces; /* in that pose */
 } query_checks;
 
-/* Looks at a mesh, unless that was done before. Of the subject is the map of its vertices, if it has
-   one; otherwise set->weld tells how they are joined. */
+/* Looks at a mesh, unless that was done before. Of the subject is the map of its vertices, if it
+   has one; otherwise set->weld tells how they are joined. */
 sc_status query_checks_mesh(query_checks *checks, const mesh_file *mesh,
                             const query_subject *subject, const query_settings *set);
 

@@ -19,9 +19,9 @@ typedef struct query_pose {
 } query_pose;
 
 /*
- * Reads a file as a pose of what query_subject_begin made; if that is NULL or empty, builds from the
- * file as how says. On failure false, and error says why, beginning with the path. To be freed in
- * either case.
+ * Reads a file as a pose of what query_subject_begin made; if that is NULL or empty, builds from
+ * the file as how says. On failure false, and error says why, beginning with the path. To be freed
+ * in either case.
  */
 bool query_pose_read(query_pose *pose, const char *path, const query_subject *shared,
                      const query_subject_how *how, char error[MESH_FILE_ERROR_SIZE]);

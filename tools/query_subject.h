@@ -42,8 +42,8 @@ bool query_subject_load(query_subject *subject, const char *path, const query_su
 bool query_subject_open(query_subject *subject, const char *path, uint32_t flags,
                         char error[MESH_FILE_ERROR_SIZE]);
 
-/* What all poses of a run share: builds from a rest mesh, or takes a model that was saved, or leaves
-   the subject empty if both paths are NULL. */
+/* What all poses of a run share: builds from a rest mesh, or takes a model that was saved, or
+   leaves the subject empty if both paths are NULL. */
 bool query_subject_begin(query_subject *subject, const char *rest_path, const char *model_path,
                          const query_subject_how *how, char error[MESH_FILE_ERROR_SIZE]);
 

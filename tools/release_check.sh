@@ -2,12 +2,12 @@
 # What a release needs, one step after the other, and a table of how each went: passed, failed, or
 # not tried because something is not installed here. Exit status 1 if a step failed.
 #
-#     tools/release_check.sh FOLDER [STEP...]      from the top of the repository; default: all steps
+#     tools/release_check.sh FOLDER [STEP...]     from the top of the repository; default: all steps
 #
 # Each step's output goes to FOLDER/STEP.log. Steps are committed (nothing is left uncommitted),
 # version (every file agrees, and CHANGELOG.md has a day), layering, tests (make test), abi (make
-# abi-check), wasm (make test-wasm: the package for npm, packed as npm packs it), and a package each:
-# the scripts of tests/packages. MAKE: the make to use; EMCC: emscripten's compiler.
+# abi-check), wasm (make test-wasm: the package for npm, packed as npm packs it), and a package
+# each: the scripts of tests/packages. MAKE: the make to use; EMCC: emscripten's compiler.
 #
 # SPDX-License-Identifier: MIT
 set -u

@@ -176,8 +176,8 @@ static void begin_search(thickness *self, const uint32_t source[2])
     }
 }
 
-/* Goes on along all edges from a vertex. A vertex that is out of the heap has its shortest path, and
-   none is shorter: rounded sums grow with what they are sums of, as lengths of edges are not
+/* Goes on along all edges from a vertex. A vertex that is out of the heap has its shortest path,
+   and none is shorter: rounded sums grow with what they are sums of, as lengths of edges are not
    negative. */
 static void go_on(thickness *self, uint32_t vertex)
 {

@@ -3,12 +3,12 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Made of the pairs that sc_query_near finds within a distance D: of a vertex and a face, and of two
- * edges. The distance of a pair counts for all triangles at its two features, which are those that
- * have the vertex as a corner, those that have the edge as a side, and the face. It does not count
- * if a path of edges of the mesh that is shorter than 2 D leads from a vertex of one feature to a
- * vertex of the other: then the two are near each other because the surface leads from one to the
- * other. The thickness of a triangle is the least distance that counts, and more than D if none
+ * Made of the pairs that sc_query_near finds within a distance D: of a vertex and a face, and of
+ * two edges. The distance of a pair counts for all triangles at its two features, which are those
+ * that have the vertex as a corner, those that have the edge as a side, and the face. It does not
+ * count if a path of edges of the mesh that is shorter than 2 D leads from a vertex of one feature
+ * to a vertex of the other: then the two are near each other because the surface leads from one to
+ * the other. The thickness of a triangle is the least distance that counts, and more than D if none
  * does.
  *
  * Why 2 D: on a flat sheet the way over the surface is as long as the straight one, and across an

@@ -1,13 +1,13 @@
 #!/bin/sh
-# `make dataset-peers`: times libraries from PyPI beside ours on poses of sc-dataset's character, and
-# on the same poses with coordinates rounded to multiples of 1/512, by dataset.py, into a new CSV file.
-# Wrong answers are no failure, but what the file is about.
+# `make dataset-peers`: times libraries from PyPI beside ours on poses of sc-dataset's character,
+# and on the same poses with coordinates rounded to multiples of 1/512, by dataset.py, into a new
+# CSV file. Wrong answers are no failure, but what the file is about.
 #
 #     bench/peers/measure_dataset.sh CSV SC-DATASET LIBRARY BUILD     from the top of the repository
 #
 # A peer that cannot be installed is skipped with a message, which the file keeps. Those that take
-# seconds a pose get fewer poses: the first ones of the same. $POSES: no peer gets more. Those that can
-# use more than one thread are run with all as well. The machine ought to be quiet.
+# seconds a pose get fewer poses: the first ones of the same. $POSES: no peer gets more. Those that
+# can use more than one thread are run with all as well. The machine ought to be quiet.
 #
 # SPDX-License-Identifier: MIT
 set -u

@@ -1,7 +1,7 @@
 #!/bin/sh
 # `make near-peers`: times ipc-toolkit beside what is near, by near.py, into a new CSV file.
 #
-#     bench/peers/measure_near.sh CSV "SCENES" SC-BENCH LIBRARY BUILD     from the top of the repository
+#     bench/peers/measure_near.sh CSV "SCENES" SC-BENCH LIBRARY BUILD   from the top
 #
 # Without SCENES, folders as sc-bench --export writes them, sc-bench writes those below into
 # BUILD/peers/scenes. ipc-toolkit comes from PyPI, into a virtual environment below BUILD; if it

@@ -1,13 +1,14 @@
 #!/bin/sh
-# `make trace-peers`: compares contours of sc_trace with the curves that libigl, CGAL and MeshLib find, and
-# times all of them, by trace_curves.py, into a new CSV file.
+# `make trace-peers`: compares contours of sc_trace with the curves that libigl, CGAL and MeshLib
+# find, and times all of them, by trace_curves.py, into a new CSV file.
 #
-#     bench/peers/measure_trace.sh CSV "SCENES" SC-BENCH LIBRARY CGAL BUILD   from the top of the repository
+#     bench/peers/measure_trace.sh CSV "SCENES" SC-BENCH LIBRARY CGAL BUILD   from the top
 #
-# CGAL is the shared library made of trace_cgal.cpp, or "" where there is none. Without SCENES, folders as
-# sc-bench --export writes them, sc-bench writes those below. A peer that cannot be had is skipped with a
-# message, which the file keeps, and so is one that takes more than $LIMIT seconds (900) for a scene. Fails if
-# curves differ from those of libigl or CGAL. The machine ought to be quiet.
+# CGAL is the shared library made of trace_cgal.cpp, or "" where there is none. Without SCENES,
+# folders as sc-bench --export writes them, sc-bench writes those below. A peer that cannot be had
+# is skipped with a message, which the file keeps, and so is one that takes more than $LIMIT seconds
+# (900) for a scene. Fails if curves differ from those of libigl or CGAL. The machine ought to be
+# quiet.
 #
 # SPDX-License-Identifier: MIT
 set -u

@@ -3,12 +3,12 @@
  * compares their pairs.
  *
  * A folder of objects has objects.txt, with a line "FOLDER ITSELF" for each: a scene folder in it
- * with the object's mesh and poses, one if it does not move, and whether it is asked about itself, 1
- * or 0. sc-objects --export writes such folders.
+ * with the object's mesh and poses, one if it does not move, and whether it is asked about itself,
+ * 1 or 0. sc-objects --export writes such folders.
  *
- * starcontour ("objects") is asked by sc_query_objects, in as many threads as the peer. Objects with
- * the same triangles share a model; the version of what does not move stays. Models, workspaces and
- * threads are made before.
+ * starcontour ("objects") is asked by sc_query_objects, in as many threads as the peer. Objects
+ * with the same triangles share a model; the version of what does not move stays. Models,
+ * workspaces and threads are made before.
  *
  * SPDX-License-Identifier: MIT
  */

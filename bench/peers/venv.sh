@@ -3,8 +3,8 @@
 #
 #     bench/peers/venv.sh DIRECTORY PACKAGE CSV
 #
-# Versions stand in requirements.txt, or in the file VERSIONS; only wheels are taken. If the package cannot be had, that
-# is said, also in the CSV file (see skip.sh), and the exit status is 3.
+# Versions stand in requirements.txt, or in the file VERSIONS; only wheels are taken. If the package
+# cannot be had, that is said, also in the CSV file (see skip.sh), and the exit status is 3.
 #
 # SPDX-License-Identifier: MIT
 set -u

@@ -169,17 +169,17 @@ static inline double sc_bounds_near(double distance, double size)
 #define SC_BOUNDS_NEAR_SQUARE (8 * (double)SC_BOUNDS_V)
 
 /*
- * A bound of a distance (near/distance_kernel.h). With g a place along w times |w|, both as computed,
- * and r = g / |w|, the distance is more than each d' <= d for which
- * r > (d' + E) (1 + SC_BOUNDS_NEAR_SQUARE) in squares, E being sc_bounds_near for d: so it is at least
- * r (1 - 4 SC_BOUNDS_NEAR_SQUARE) - E. Doubles round that by less than 2^-48, also where it is
- * denormal in units of the pose, as the unit box is then 2^1022 times as large at most; of which
+ * A bound of a distance (near/distance_kernel.h). With g a place along w times |w|, both as
+ * computed, and r = g / |w|, the distance is more than each d' <= d for which
+ * r > (d' + E) (1 + SC_BOUNDS_NEAR_SQUARE) in squares, E being sc_bounds_near for d: so it is at
+ * least r (1 - 4 SC_BOUNDS_NEAR_SQUARE) - E. Doubles round that by less than 2^-48, also where it
+ * is denormal in units of the pose, as the unit box is then 2^1022 times as large at most; of which
  * there are 1e-9 to spare in SC_BOUNDS_NEAR.
  */
 #define SC_BOUNDS_NEAR_BELOW (4 * SC_BOUNDS_NEAR_SQUARE)
 
-/* What the distance of a stencil is off by, over itself, with its rounding downwards; or, where that
-   is less, as a length. See sc_near_stencil. */
+/* What the distance of a stencil is off by, over itself, with its rounding downwards; or, where
+   that is less, as a length. See sc_near_stencil. */
 #define SC_BOUNDS_STENCIL 0x1p-49
 #define SC_BOUNDS_STENCIL_LEAST 0x1p-1022
 

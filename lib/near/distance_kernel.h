@@ -21,8 +21,8 @@ typedef struct near_limits {
     double error;
 } near_limits;
 
-/* What was measured of sixteen pairs: squares of lengths of w, and g, the least places along w, times
-   |w|. */
+/* What was measured of sixteen pairs: squares of lengths of w, and g, the least places along w,
+   times |w|. */
 typedef struct near_measured {
     float square[SC_LANES_COUNT], g[SC_LANES_COUNT];
 } near_measured;
@@ -51,8 +51,8 @@ static inline lanes near_clamp(lanes x)
 }
 
 /* At most the distance of one of them, in the unit box; less than 0 if what was guessed tells too
-   little: its distance is at most |w| + error. Where |w| is more than twice the error, its square is
-   far above SC_BOUNDS_NEAR_LEAST. */
+   little: its distance is at most |w| + error. Where |w| is more than twice the error, its square
+   is far above SC_BOUNDS_NEAR_LEAST. */
 static inline double near_bound(const near_measured *m, uint32_t i, const near_limits *limits)
 {
     const double g = (double)m->g[i], length = sqrt((double)m->square[i]);

@@ -3,9 +3,9 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * From each point of a leaf cluster the mesh is walked round it, as filters do, and each point that is
- * reached marked in all leaf clusters that have it. That is done twice: first to count the masks, as
- * they are in one block of memory.
+ * From each point of a leaf cluster the mesh is walked round it, as filters do, and each point that
+ * is reached marked in all leaf clusters that have it. That is done twice: first to count the
+ * masks, as they are in one block of memory.
  */
 #include "near/masks.h"
 
@@ -150,8 +150,8 @@ static int has_side(const sc_model *model, uint32_t leaf, unsigned points)
     return 0;
 }
 
-/* Whether a mask leaves any triangle of a with a point of b, or, if sides are asked about, a side of
-   a with one of b. near: points of b near to those of a. */
+/* Whether a mask leaves any triangle of a with a point of b, or, if sides are asked about, a side
+   of a with one of b. near: points of b near to those of a. */
 static int leaves_some(const sc_model *model, uint32_t a, uint32_t b, const uint16_t *near,
                        int sides)
 {

@@ -14,8 +14,8 @@
 
 #include "build/model.h"
 
-/* Of two leaf clusters: bit j of near[0][i] says that point i of the lower one is that near to point
-   j of the other, near[1] the same the other way round. */
+/* Of two leaf clusters: bit j of near[0][i] says that point i of the lower one is that near to
+   point j of the other, near[1] the same the other way round. */
 typedef struct sc_leaf_mask {
     uint16_t near[2][SC_LEAF_POINTS];
 } sc_leaf_mask;

@@ -19,17 +19,17 @@ int sc_near_candidates_are_asked(const sc_worker *w, int kind);
 void sc_near_candidates_set_bounds(const sc_near_question *question, uint32_t vertices,
                                    double bound);
 
-/* Whether bounds are wanted that one worker has to find: of what the caller's function leaves, which
-   it is asked as pairs are found; or where workers cannot lower one number together. */
+/* Whether bounds are wanted that one worker has to find: of what the caller's function leaves,
+   which it is asked as pairs are found; or where workers cannot lower one number together. */
 int sc_near_candidates_need_one_worker(const sc_near_question *question);
 
 /* Takes a pair that is near, which was not taken before, in numbers of places, if filters leave
-   it; bound: at most its distance, for bounds of vertices if these are wanted; less than 0: it is to
-   be computed. */
+   it; bound: at most its distance, for bounds of vertices if these are wanted; less than 0: it is
+   to be computed. */
 void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner, double bound);
 
-/* Decides a pair that floats left open by exact signs, unless it is known to be near, and takes it if
-   it is. */
+/* Decides a pair that floats left open by exact signs, unless it is known to be near, and takes it
+   if it is. */
 void sc_near_candidates_decide(sc_worker *w, int kind, sc_pair inner, int is_near);
 
 #endif

@@ -3,12 +3,12 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * First, the points, triangles and edges of each cluster are kept that the other's box, and the slab
- * of all its points, do not separate from it. Then come rows: a triangle of one with those points of
- * the other, and an edge with those edges of the other, whose boxes are near. Where the distance is
- * small beside triangles, slabs of triangles strike out most of these: points beyond the slab of the
- * triangle, and edges of which both ends are beyond the slab of the triangle that names the other
- * edge. What rows leave is listed, and its distances are computed sixteen at a time
+ * First, the points, triangles and edges of each cluster are kept that the other's box, and the
+ * slab of all its points, do not separate from it. Then come rows: a triangle of one with those
+ * points of the other, and an edge with those edges of the other, whose boxes are near. Where the
+ * distance is small beside triangles, slabs of triangles strike out most of these: points beyond
+ * the slab of the triangle, and edges of which both ends are beyond the slab of the triangle that
+ * names the other edge. What rows leave is listed, and its distances are computed sixteen at a time
  * (near/distance_kernel.h).
  *
  * A vertex belongs to the first leaf cluster that has it, an edge to the triangle that names it: so
@@ -55,8 +55,8 @@ typedef struct near_search {
     int asked[2];     /* filters are, of vertices with faces and of edges; or bounds are wanted */
     int between;      /* side a is of one object, side b of another */
     near_measured room, *measured; /* that, if bounds of distances are wanted, or NULL */
-    double scale; /* a power of two: of lengths in the unit box to those of the pose, whose inverse may
-                     be too large for a double */
+    double scale; /* a power of two: of lengths in the unit box to those of the pose, whose inverse
+                     may be too large for a double */
 } near_search;
 
 /* Points before the low sides of a box, and in the upper half those behind the high ones. */

@@ -21,7 +21,8 @@
 void sc_contacts_find(const double *const a[3], const double *const b[3], sc_contact *contact);
 
 /* Where an edge passes properly (SC_CONTACT_PROPER) through a triangle, which is known: the weight
-   of its second end, those of the triangle's corners, and the point, as accurate as in a contact. */
+   of its second end, those of the triangle's corners, and the point, as accurate as in a
+   contact. */
 double sc_contacts_pass(const double *const edge[2], const double *const triangle[3],
                         double weights[3], double point[3]);
 

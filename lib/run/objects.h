@@ -4,9 +4,9 @@
  * SPDX-License-Identifier: MIT
  *
  * Each object with itself, and each two whose boxes come near, is a query of its own, in the first
- * one's workspace (run/plan.h). Edges with triangles are two queries, since either object may be that
- * of the edges; vertices with faces are one, which marks those of the second object with the first's
- * faces (SC_STEP_TURNED).
+ * one's workspace (run/plan.h). Edges with triangles are two queries, since either object may be
+ * that of the edges; vertices with faces are one, which marks those of the second object with the
+ * first's faces (SC_STEP_TURNED).
  */
 #ifndef SC_RUN_OBJECTS_H
 #define SC_RUN_OBJECTS_H

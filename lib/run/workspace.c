@@ -459,8 +459,8 @@ static void begin_step_worker(const sc_step_question *question, sc_step_worker *
     for (k = 0; k < 2; k++) step->count[k] = step->found_count[k] = 0;
 }
 
-/* Of a question about two objects, the workers that have the second: where both are in one room, the
-   others there. */
+/* Of a question about two objects, the workers that have the second: where both are in one room,
+   the others there. */
 static sc_worker *seconds_of(const sc_question *question)
 {
     return question->one_room ? question->second->others : question->second->worker;

@@ -9,8 +9,8 @@
  *
  * What is of a pose and may be needed again is in the frame. All else is the room. A workspace may
  * use that of another one of its model; then it ends behind point_at, and one question at a time
- * has the room, or several of one call, each by one worker with a part of the room. Epochs are given
- * out by the room, so that what was made of one frame is never taken for that of another. Two
+ * has the room, or several of one call, each by one worker with a part of the room. Epochs are
+ * given out by the room, so that what was made of one frame is never taken for that of another. Two
  * objects in one room are asked about by a worker and another one, of a second set, which has the
  * second object; the part of the room is halved.
  *
@@ -131,8 +131,8 @@ sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
 sc_worker *sc_workspace_resume(const sc_model *model, sc_workspace *workspace,
                                const sc_question *question);
 
-/* To be called by one thread before a pose is read: makes sure that there are epochs. If these had to
-   begin anew, what is known of an earlier pose is stale. keeps: the room for derived data of all
+/* To be called by one thread before a pose is read: makes sure that there are epochs. If these had
+   to begin anew, what is known of an earlier pose is stale. keeps: the room for derived data of all
    leaf clusters is not used for anything else until the next call. */
 void sc_workspace_renew(sc_workspace *workspace, int keeps);
 

@@ -4,8 +4,8 @@
  * SPDX-License-Identifier: MIT
  *
  * Number i is in a set if bit i is set. lanes_sets_load reads sixteen sets, lanes_sets_store writes
- * them, lanes_sets_of makes them of one number each, lanes_sets_join joins each two. lanes_within tells which of them have no
- * number that is not in one set.
+ * them, lanes_sets_of makes them of one number each, lanes_sets_join joins each two. lanes_within
+ * tells which of them have no number that is not in one set.
  */
 #if SC_LANES_AVX512 || SC_LANES_AVX2
 

@@ -116,7 +116,7 @@ static int are_on_one_side(const moving_vector *v, int count, clearance k)
         }
     r = sqrt(rx * rx + ry * ry);
     l = sqrt(lx * lx + ly * ly);
-    /* if the first vector is 0, none replaced it: then these are NaN, along which nothing is clear */
+    /* if the first vector is 0, none replaced it: then these are NaN, and nothing is clear */
     return are_clear_along(v, count, ly / l - ry / r, rx / r - lx / l, k);
 }
 

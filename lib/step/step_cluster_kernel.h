@@ -81,8 +81,8 @@ static void compare_moving_between(sc_worker *w, uint32_t most)
     }
 }
 
-/* Lists the pairs of a row; returns how many. Between two objects a row of edges is one of the first
-   with some of the second; one of faces, of either with vertices of the other, says so. */
+/* Lists the pairs of a row; returns how many. Between two objects a row of edges is one of the
+   first with some of the second; one of faces, of either with vertices of the other, says so. */
 static uint32_t list_moving_row(const sc_worker *w, const sc_moving_row *row, int kind, sc_pair *to)
 {
     const int faces = kind == SC_STEP_VERTEX_FACE;

@@ -5,7 +5,8 @@
 #
 #     symbols.txt                  what the shared library LIBRARY exports
 #     interface_64.txt, _32.txt    structures, enumerators and calls of the public headers (INCLUDE, else
-#                                  include), for pointers of so many bits: CC's own, and 32 if CC can (-m32)
+#                                  include), for pointers of so many bits: CC's own, and 32 if CC
+#                                  can (-m32)
 #
 # `make abi-update` writes the goldens in tests/abi/, to be reviewed as a diff; tests/test_abi.sh
 # compares with them. tests/abi/grown.awk says which differences break callers.

@@ -103,7 +103,8 @@ start() {
 check "a cluster of one node" start
 [ "$checks_failed" -eq 0 ] || finish
 
-# ---- a list: for each task six meshes, the last of which takes a second or two where it is ended ----
+# ---- a list: for each task six meshes, the last of which takes a second or two where it is ended
+# ----
 
 { printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\n' && yes 'f 1 2 3' | head -n 9000; } >"$at/slow.obj"
 for i in $(seq $tasks); do
@@ -120,7 +121,8 @@ check "one run" status 2 "$query" --jsonl "$at/whole" --manifest "$at/list"
 # ---- the array ----
 
 # Tasks 3, 13, 23, 33 and 43 are requeued by Slurm at their first start, and 7, 17, 27, 37 and 47
-# killed with all their processes, before their last line; those that were killed are submitted again.
+# killed with all their processes, before their last line; those that were killed are submitted
+# again.
 cat >"$at/job" <<EOT
 #!/bin/sh
 file=$at/out/\$SLURM_ARRAY_TASK_ID

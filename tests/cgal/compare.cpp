@@ -6,8 +6,9 @@
  *
  * Both sides get the same coordinates, as tools/mesh_file.h reads them, equal positions joined.
  * Ours: SC_PAIRS_TRIANGLE, touching, by all three methods. CGAL's: Polygon_mesh_processing::
- * self_intersections with exact predicates (the kernel named below, whose constructions are not used),
- * brought to our definition as follows. Statements about CGAL are those of its headers, version 5.5.1.
+ * self_intersections with exact predicates (the kernel named below, whose constructions are not
+ * used), brought to our definition as follows. Statements about CGAL are those of its headers,
+ * version 5.5.1.
  *
  *   CGAL                                            ours, and what is done about it
  *   triangles are closed: touching is a pair        the same
@@ -20,32 +21,35 @@
  *   (a, b) and (b, a) are one pair, in any order    a < b, sorted: put into this order
  *   a mesh is an oriented 2-manifold; vertices      any soup: a triangle that CGAL's mesh refuses, as it
  *     are common if they are one in the mesh          would make it non-manifold, gets vertices of its
- *                                                     own. What it shares with others then counts as
- *                                                     touching, so CGAL reports all our pairs and some
- *                                                     more; each reported pair with fewer common
- *                                                     vertices in CGAL's mesh than common positions is
- *                                                     tried again with the rule for the latter.
+ *                                                     own. What it shares with others then counts
+ *                                                     as touching, so CGAL reports all our pairs
+ *                                                     and some more; each reported pair with fewer
+ *                                                     common vertices in CGAL's mesh than common
+ *                                                     positions is tried again with the rule for
+ *                                                     the latter.
  *   a degenerate triangle is reported as (f, f),    a degenerate triangle is a segment or a point, and
  *     and in no other pair                            pairs like any other: (f, f) is dropped, and CGAL's
- *                                                     box_intersection_d and do_intersect, on segments
- *                                                     and points, find its pairs. Two triangles with a
- *                                                     common edge of which both are segments pair if
- *                                                     both go beyond the same end of it.
+ *                                                     box_intersection_d and do_intersect, on
+ *                                                     segments and points, find its pairs. Two
+ *                                                     triangles with a common edge of which both
+ *                                                     are segments pair if both go beyond the same
+ *                                                     end of it.
  *
- * (triangle_soup_self_intersections, which newer versions of CGAL have, would spare the mesh, not the
- * other differences.)
+ * (triangle_soup_self_intersections, which newer versions of CGAL have, would spare the mesh, not
+ * the other differences.)
  *
  * Each differing pair is printed with its coordinates and with what exact rational arithmetic
  * (tests/oracle.h) says of it. Where that agrees with us the difference is explained.
  *
  * Prints one line on the mesh: whether pairs are the same, triangles, our pairs, CGAL's (mapped),
- * milliseconds of both (ours with building the model; CGAL's without its mesh), and CGAL's own count.
- * Exit status: 0 same or explained, 1 different, 2 wrong usage or our library fails, 3 not read as a
- * mesh, 4 left out for the reason printed.
+ * milliseconds of both (ours with building the model; CGAL's without its mesh), and CGAL's own
+ * count. Exit status: 0 same or explained, 1 different, 2 wrong usage or our library fails, 3 not
+ * read as a mesh, 4 left out for the reason printed.
  *
  * Cost: some microseconds a triangle on each side, and one for each pair that touches.
  *
- * CGAL's headers used here are under the GPL: so is a binary of this program. It is never installed.
+ * CGAL's headers used here are under the GPL: so is a binary of this program. It is never
+ * installed.
  */
 #include <stdbool.h>
 #include <stddef.h>

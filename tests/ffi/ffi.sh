@@ -6,8 +6,8 @@
 # Each program is run on meshes/crossing_cloths.obj with the pairs and contours it should find and
 # the structures as a C compiler lays them out; then with some of them changed, which it has to
 # notice. What misses its toolchain is skipped and counted as that. The last line is the sum: "N
-# passed, N failed, N skipped". Exit status 1 if anything failed or nothing ran. CC, CXX, PYTHON: what
-# to use for these.
+# passed, N failed, N skipped". Exit status 1 if anything failed or nothing ran. CC, CXX, PYTHON:
+# what to use for these.
 #
 # SPDX-License-Identifier: MIT
 set -u

@@ -1,9 +1,9 @@
 /*
- * Fuzz target: sc_trace, sc_trace_triples, sc_trace_gradients and sc_trace_regions. A small mesh, or two or three
- * that are the same, built in some way, in poses of any coordinates. What is found is held against
- * the oracle's crossings and against what is true of all contours and regions; then with arrays too
- * short, memory that runs out, pairs and contours that were tampered with, and coordinates that are
- * no numbers.
+ * Fuzz target: sc_trace, sc_trace_triples, sc_trace_gradients and sc_trace_regions. A small mesh,
+ * or two or three that are the same, built in some way, in poses of any coordinates. What is found
+ * is held against the oracle's crossings and against what is true of all contours and regions; then
+ * with arrays too short, memory that runs out, pairs and contours that were tampered with, and
+ * coordinates that are no numbers.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -1,6 +1,6 @@
 /*
- * What is true of contours, of where they cross, of their gradients and of regions, whatever the mesh and the pose. For
- * the fuzz target of traces: each function ends the program at what is not.
+ * What is true of contours, of where they cross, of their gradients and of regions, whatever the
+ * mesh and the pose. For the fuzz target of traces: each function ends the program at what is not.
  *
  * SPDX-License-Identifier: MIT
  */

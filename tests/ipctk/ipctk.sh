@@ -6,9 +6,10 @@
 #
 # ipc-toolkit comes from PyPI, into a virtual environment below BUILD; if it cannot be had, the
 # comparison is skipped with a message. Scenes are small: ipc-toolkit's candidates, hundreds of
-# thousands, are gone through in Python; of 60 frames every tenth step is taken, and for what is near
-# two poses. Scenes whose meshes were not fetched are skipped, too. Last line: "N passed, N failed,
-# N skipped", where scenes are counted, each of them for steps and for what is near. Some minutes.
+# thousands, are gone through in Python; of 60 frames every tenth step is taken, and for what is
+# near two poses. Scenes whose meshes were not fetched are skipped, too. Last line: "N passed, N
+# failed, N skipped", where scenes are counted, each of them for steps and for what is near. Some
+# minutes.
 #
 # SPDX-License-Identifier: MIT
 set -u

@@ -1,9 +1,9 @@
 #!/bin/sh
 # By MSVC's rules: clang-cl, which keeps the binary interface of Microsoft's compiler and takes its
-# options, with the headers and import libraries of mingw-w64 in place of Microsoft's. CMakeLists.txt
-# builds as it does with Visual Studio's ClangCL: the static library and the DLL, warnings as errors;
-# tests and users are linked with them, and under wine, where that is there, run and give the same
-# pairs as here.
+# options, with the headers and import libraries of mingw-w64 in place of Microsoft's.
+# CMakeLists.txt builds as it does with Visual Studio's ClangCL: the static library and the DLL,
+# warnings as errors; tests and users are linked with them, and under wine, where that is there, run
+# and give the same pairs as here.
 #
 #     tests/packages/clang_cl.sh [MINGW]      x86_64-w64-mingw32
 #

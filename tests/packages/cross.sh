@@ -4,7 +4,7 @@
 # have their bytes the other way round. The same pairs as here, and tests that need neither GMP nor
 # libccd.
 #
-#     tests/packages/cross.sh [MACHINE...]      aarch64-linux-gnu arm-linux-gnueabihf s390x-linux-gnu
+#     tests/packages/cross.sh [MACHINE...]     aarch64-linux-gnu arm-linux-gnueabihf s390x-linux-gnu
 #
 # Debian: gcc-aarch64-linux-gnu, gcc-arm-linux-gnueabihf, gcc-s390x-linux-gnu, qemu-user. A machine
 # takes some minutes.

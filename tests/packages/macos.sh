@@ -1,13 +1,13 @@
 #!/bin/sh
 # By macOS's binary interface, for Intel and ARM: the Makefile, told that it is on macOS, builds the
-# static and the shared library by clang and LLVM's linker. Nothing of it can run here. What is seen:
-# it compiles without a warning and links; what the shared library exports, under which names, and
-# what it needs; structures, enumerators and calls are those of tests/abi.
+# static and the shared library by clang and LLVM's linker. Nothing of it can run here. What is
+# seen: it compiles without a warning and links; what the shared library exports, under which names,
+# and what it needs; structures, enumerators and calls are those of tests/abi.
 #
 #     tests/packages/macos.sh [SDK]      a folder with usr/include and usr/lib of macOS
 #
-# Without an SDK it is that of zig (a program, or Python's module ziglang), which carries macOS's own
-# headers and the list of what libSystem has. Without zig there are stand-ins: the headers of
+# Without an SDK it is that of zig (a program, or Python's module ziglang), which carries macOS's
+# own headers and the list of what libSystem has. Without zig there are stand-ins: the headers of
 # tests/packages/libc, and a list of what the library calls of libSystem; tests are left out then.
 #
 # Debian: clang, lld, llvm. zig: pip install 'ziglang==0.13.*'; clang 14 does not read the headers

@@ -1,7 +1,7 @@
 #!/bin/sh
-# `make wheels`: a wheel with a manylinux tag and a source distribution that builds without a network.
-# Each is installed into a virtual environment of its own, and finds what the library finds in C.
-# Needs Python 3 with venv and numpy, and a network for setuptools and auditwheel.
+# `make wheels`: a wheel with a manylinux tag and a source distribution that builds without a
+# network. Each is installed into a virtual environment of its own, and finds what the library finds
+# in C. Needs Python 3 with venv and numpy, and a network for setuptools and auditwheel.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

@@ -4,9 +4,9 @@
  *
  *     answers FOLDER FILE.obj...     also writes FOLDER/FILE.obj.scm, the saved model
  *
- * Questions: pairs of triangles and of edges, where they meet, contours, their gradients and regions,
- * where they cross, what is near, its closest points and bounds, and steps with times; each on three poses, which are
- * made by additions and products alone.
+ * Questions: pairs of triangles and of edges, where they meet, contours, their gradients and
+ * regions, where they cross, what is near, its closest points and bounds, and steps with times;
+ * each on three poses, which are made by additions and products alone.
  *
  * SPDX-License-Identifier: MIT
  */

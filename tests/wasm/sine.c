@@ -5,7 +5,8 @@
  * SPDX-License-Identifier: MIT
  *
  * The angle is brought to [-pi/4, pi/4] by multiples of pi/2, then a Taylor series: within about
- * 1e-15 for angles of a few turns, and something from -1 to 1 for any, which is all that tests need.
+ * 1e-15 for angles of a few turns, and something from -1 to 1 for any, which is all that tests
+ * need.
  */
 #include <math.h>
 

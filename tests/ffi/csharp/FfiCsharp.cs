@@ -29,7 +29,8 @@ static class FfiCsharp
         return false;
     }
 
-    // Each structure has the members of the header, no more and no fewer, where the header has them.
+    // Each structure has the members of the header, no more and no fewer, where the header has
+    // them.
     static void CheckLayout(string path)
     {
         var lines = File.ReadAllLines(path).Select(line => line.Split(' ')).ToList();
@@ -98,8 +99,8 @@ static class FfiCsharp
         return next == (ulong)found.Nodes.Count;
     }
 
-    // Meetings as pairs of the one mesh of two objects, sorted; firstA and firstB: the numbers of what
-    // is the second one's first there.
+    // Meetings as pairs of the one mesh of two objects, sorted; firstA and firstB: the numbers of
+    // what is the second one's first there.
     static IEnumerable<string> Joined(Meeting[] meetings, int firstA, int firstB)
     {
         return meetings.SelectMany(m => m.Pairs.Select(pair =>

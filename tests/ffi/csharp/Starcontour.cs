@@ -1,6 +1,6 @@
-// starcontour for C#, by P/Invoke: blittable structures, handles that free themselves, arrays pinned
-// for the length of a call and not copied. As an assembly of Unity it needs "unsafe" allowed and
-// the shared library among the plug-ins.
+// starcontour for C#, by P/Invoke: blittable structures, handles that free themselves, arrays
+// pinned for the length of a call and not copied. As an assembly of Unity it needs "unsafe" allowed
+// and the shared library among the plug-ins.
 //
 // SPDX-License-Identifier: MIT
 using System;
@@ -38,8 +38,9 @@ namespace Starcontour
     [StructLayout(LayoutKind.Sequential)]
     public struct Vector { public double x, y, z; }
 
-    // Where an edge passes through a triangle: a sc_trace_node of the header. weights are those of the
-    // triangle's corners; sheets are the triangles in which the contour goes on to the next node.
+    // Where an edge passes through a triangle: a sc_trace_node of the header. weights are those of
+    // the triangle's corners; sheets are the triangles in which the contour goes on to the next
+    // node.
     [StructLayout(LayoutKind.Sequential)]
     public struct ContourNode
     {
@@ -329,8 +330,8 @@ namespace Starcontour
         public void Dispose() { Handle.Dispose(); }
     }
 
-    // Pairs of a vertex and a triangle, and of two edges 3 t + k: views of the workspace's own arrays,
-    // overwritten by its next step or query of what is near. Of a step, when each collides.
+    // Pairs of a vertex and a triangle, and of two edges 3 t + k: views of the workspace's own
+    // arrays, overwritten by its next step or query of what is near. Of a step, when each collides.
     public struct Features
     {
         public ArraySegment<Pair> VertexFaces, EdgeEdges;
@@ -338,8 +339,8 @@ namespace Starcontour
         public double Earliest; // of a step: nothing collides before
     }
 
-    // Contours of a pose; each names its first node and how many it has. Views of the workspace's own
-    // arrays, overwritten by its next trace.
+    // Contours of a pose; each names its first node and how many it has. Views of the workspace's
+    // own arrays, overwritten by its next trace.
     public struct TracedContours
     {
         public ArraySegment<ContourNode> Nodes;
@@ -437,8 +438,8 @@ namespace Starcontour
             fixed (double* p = positions) return Near(PoseOf(p, positions.Length / 3, 1), distance);
         }
 
-        // Contours of the intersections in a pose. Its pairs of edges and triangles are found first, in
-        // place of those of the last query.
+        // Contours of the intersections in a pose. Its pairs of edges and triangles are found
+        // first, in place of those of the last query.
         public TracedContours Trace(float[] positions)
         {
             var found = Query(positions, PairKind.Edge);
@@ -573,9 +574,9 @@ namespace Starcontour
         public void Dispose() { handle.Dispose(); }
     }
 
-    // What two objects of a scene have with each other, or one with itself: numbers of the two, pairs
-    // of what belongs to a and what belongs to b, and of a step when each collides. Views of the
-    // scene's own arrays, overwritten by its next question.
+    // What two objects of a scene have with each other, or one with itself: numbers of the two,
+    // pairs of what belongs to a and what belongs to b, and of a step when each collides. Views of
+    // the scene's own arrays, overwritten by its next question.
     public struct Meeting
     {
         public int A, B;
@@ -590,8 +591,8 @@ namespace Starcontour
         public double Earliest; // of a step: nothing collides before
     }
 
-    // An object of a scene. Arrays are read where they are, by the first question after each Set...:
-    // set again what was changed in place.
+    // An object of a scene. Arrays are read where they are, by the first question after each
+    // Set...: set again what was changed in place.
     public sealed unsafe class SceneObject
     {
         public readonly Model Model;

@@ -100,7 +100,8 @@ Timed of_one(const std::vector<sc_pair> &found, const std::vector<double> &times
     return pairs;
 }
 
-// The mesh's two cloths as two objects, whose poses are the two halves of the mesh's: the same pairs.
+// The mesh's two cloths as two objects, whose poses are the two halves of the mesh's: the same
+// pairs.
 void test_scene(const std::vector<Vertex> &rest, const std::vector<Vertex> &moved,
                 const std::vector<Triangle> &triangles)
 {
@@ -118,7 +119,8 @@ void test_scene(const std::vector<Vertex> &rest, const std::vector<Vertex> &move
     const std::array<std::size_t, 2> of_triangles[] = {{0, 0}, {t, t}};
     const std::array<std::size_t, 2> of_faces[] = {{0, 0}, {v, t}};
     const std::array<std::size_t, 2> of_edges[] = {{0, 0}, {3 * t, 3 * t}};
-    // Each cloth folded along its middle, so that it meets itself: more pairs than there is room for.
+    // Each cloth folded along its middle, so that it meets itself: more pairs than there is room
+    // for.
     auto folded = moved;
     for (auto &vertex : folded) {
         auto &[x, y, z] = vertex.position;

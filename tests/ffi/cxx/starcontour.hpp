@@ -1,6 +1,6 @@
-// starcontour for C++17: handles that free themselves, positions read in place from the application's
-// own vertices, exceptions that say which argument was refused and why. Nothing but this header and
-// starcontour.h, which is the manual; what is not wrapped is called with get().
+// starcontour for C++17: handles that free themselves, positions read in place from the
+// application's own vertices, exceptions that say which argument was refused and why. Nothing but
+// this header and starcontour.h, which is the manual; what is not wrapped is called with get().
 //
 //     const starcontour::Model model({rest, vertex_count}, triangles, triangle_count);
 //     starcontour::Workspace workspace(model);
@@ -146,7 +146,8 @@ inline sc_pose pose_of(const Positions &positions)
 
 } // namespace detail
 
-// A mesh made ready for queries. It never changes: threads may share it, each with its own Workspace.
+// A mesh made ready for queries. It never changes: threads may share it, each with its own
+// Workspace.
 class Model
 {
   public:
@@ -196,9 +197,9 @@ struct Contours {
 class Workspace
 {
   public:
-    // flags: SC_WORKSPACE_..., for steps and for what is near; workers: threads that a query may use.
-    // room: NULL, or a workspace for the same and SC_WORKSPACE_ROOM, whose room this one uses; it
-    // outlives this one.
+    // flags: SC_WORKSPACE_..., for steps and for what is near; workers: threads that a query may
+    // use. room: NULL, or a workspace for the same and SC_WORKSPACE_ROOM, whose room this one uses;
+    // it outlives this one.
     explicit Workspace(const Model &model, std::uint32_t flags = 0, std::uint32_t workers = 1,
                        const Workspace *room = nullptr)
         : model_(model.get()), log_(std::make_unique<detail::Log>())
@@ -213,8 +214,8 @@ class Workspace
         log_->check(sc_workspace_set_hooks(workspace, &log_->hooks));
     }
 
-    // All pairs in a pose, sorted; they stay until the next query. options: NULL, or as for sc_query,
-    // with SC_OUTPUT_PAIRS.
+    // All pairs in a pose, sorted; they stay until the next query. options: NULL, or as for
+    // sc_query, with SC_OUTPUT_PAIRS.
     const std::vector<sc_pair> &query(const Positions &positions,
                                       const sc_query_options *options = nullptr)
     {
@@ -236,8 +237,8 @@ class Workspace
         return pairs_;
     }
 
-    // What collides on the way from one pose to another; it stays until the next step or query of what
-    // is near. options: NULL, all pairs with their times; or as for sc_query_step.
+    // What collides on the way from one pose to another; it stays until the next step or query of
+    // what is near. options: NULL, all pairs with their times; or as for sc_query_step.
     const Features &step(const Positions &start, const Positions &end,
                          const sc_step_options *options = nullptr)
     {
@@ -262,7 +263,8 @@ class Workspace
         return found_;
     }
 
-    // What is within a distance in a pose. options: NULL, or as for sc_query_near, but for distance.
+    // What is within a distance in a pose. options: NULL, or as for sc_query_near, but for
+    // distance.
     const Features &near(const Positions &positions, double distance,
                          const sc_near_options *options = nullptr)
     {
@@ -278,8 +280,8 @@ class Workspace
         return found_;
     }
 
-    // Contours of the intersections in a pose; they stay until the next trace. Its pairs of edges and
-    // triangles are found first, in place of those of the last query. options: NULL, or as for
+    // Contours of the intersections in a pose; they stay until the next trace. Its pairs of edges
+    // and triangles are found first, in place of those of the last query. options: NULL, or as for
     // sc_trace; its tasks are also those of the query.
     const Contours &trace(const Positions &positions, const sc_trace_options *options = nullptr)
     {
@@ -373,8 +375,8 @@ struct FeatureMeetings {
     double earliest = 1; // of a step: nothing collides before
 };
 
-// Several objects: cloth and a body, characters that share a model, a level. One call at a time. What
-// did not move since the last call of the same kind is not read again.
+// Several objects: cloth and a body, characters that share a model, a level. One call at a time.
+// What did not move since the last call of the same kind is not read again.
 class Scene
 {
   public:
@@ -412,8 +414,8 @@ class Scene
         }
 
         const std::uint32_t number; // in ranges: that of the first object is 0
-        // group, itself (at first 1), filters, rest, rest_distance and masks, as for sc_object: each
-        // query takes those that it has use for. The other members are the scene's.
+        // group, itself (at first 1), filters, rest, rest_distance and masks, as for sc_object:
+        // each query takes those that it has use for. The other members are the scene's.
         sc_object options{};
 
       private:
@@ -470,8 +472,8 @@ class Scene
         return pairs_;
     }
 
-    // What is within a distance; it stays until the next step or query of what is near. wanted: NULL,
-    // or as for sc_query_objects_near, but for distance.
+    // What is within a distance; it stays until the next step or query of what is near. wanted:
+    // NULL, or as for sc_query_objects_near, but for distance.
     const FeatureMeetings &near(double distance, const sc_near_options *wanted = nullptr)
     {
         auto asked = wanted != nullptr ? *wanted : sized<sc_near_options>();
@@ -485,8 +487,8 @@ class Scene
         });
     }
 
-    // What collides while objects move from their pose to their end; it stays as long. wanted: NULL,
-    // all pairs with their times; or as for sc_query_objects_step.
+    // What collides while objects move from their pose to their end; it stays as long. wanted:
+    // NULL, all pairs with their times; or as for sc_query_objects_step.
     const FeatureMeetings &step(const sc_step_options *wanted = nullptr)
     {
         auto all = sized<sc_step_options>();

@@ -1,5 +1,5 @@
-// Several objects in one query, by cgo. A scene is C's memory, which may hold pointers: positions are
-// copied there when they are set, and what was found is copied from there.
+// Several objects in one query, by cgo. A scene is C's memory, which may hold pointers: positions
+// are copied there when they are set, and what was found is copied from there.
 //
 // SPDX-License-Identifier: MIT
 
@@ -10,8 +10,8 @@ package main
 #include <stdlib.h>
 #include <string.h>
 
-// An object of a scene, and its positions, which are its own. lender: of the first object of a model
-// that others have as well, the workspace whose room those use.
+// An object of a scene, and its positions, which are its own. lender: of the first object of a
+// model that others have as well, the workspace whose room those use.
 typedef struct placed {
     sc_object object;
     sc_pose pose, end;
@@ -227,8 +227,8 @@ func SetPose[T Scalar](o Object, positions [][3]T) error { return place(o, 0, po
 // SetEnd says where an object is at the end of a step; nil, as at first: where it began.
 func SetEnd[T Scalar](o Object, positions [][3]T) error { return place(o, 1, positions) }
 
-// Meeting is what two objects have with each other, or one with itself: their numbers, pairs of what
-// belongs to A and what belongs to B, and of a step when each collides.
+// Meeting is what two objects have with each other, or one with itself: their numbers, pairs of
+// what belongs to A and what belongs to B, and of a step when each collides.
 type Meeting struct {
 	A, B  int
 	Pairs []Pair

@@ -45,7 +45,8 @@ static sc_status create(const sc_model *model, uint32_t flags, sc_workspace **wo
     return sc_workspace_create_for(model, &options, workspace);
 }
 
-// Of the arrays of pairs and times, *face_count and *edge_count are the lengths, then what was found.
+// Of the arrays of pairs and times, *face_count and *edge_count are the lengths, then what was
+// found.
 static sc_status step(const sc_model *model, sc_workspace *workspace, const void *start,
                       const void *end, uint32_t vertex_count, uint32_t position_type,
                       double separation, sc_pair *faces, double *face_times, uint64_t *face_count,
@@ -95,8 +96,8 @@ static sc_status edge_pairs(const sc_model *model, sc_workspace *workspace, cons
     return status;
 }
 
-// Of the arrays of nodes and contours, *node_count and *contour_count are the lengths, then what was
-// found.
+// Of the arrays of nodes and contours, *node_count and *contour_count are the lengths, then what
+// was found.
 static sc_status trace(const sc_model *model, const void *positions, uint32_t vertex_count,
                        uint32_t position_type, const sc_pair *pairs, uint64_t count,
                        sc_trace_node *nodes, uint64_t *node_count, sc_trace_contour *contours,
@@ -301,8 +302,8 @@ type Contour struct {
 	Length       float64
 }
 
-// Where a contour begins and ends; in its flags, that its two sheets are one; and what is in place of
-// an edge or of sheets.
+// Where a contour begins and ends; in its flags, that its two sheets are one; and what is in place
+// of an edge or of sheets.
 const (
 	ContourClosed   = C.SC_TRACE_CLOSED
 	ContourBorder   = C.SC_TRACE_BORDER
@@ -312,15 +313,15 @@ const (
 	NoEdge          = C.SC_TRACE_NO_EDGE
 )
 
-// Contours are those of a pose; each names its first node and how many it has. They stay as they are
-// until the workspace's next Trace.
+// Contours are those of a pose; each names its first node and how many it has. They stay as they
+// are until the workspace's next Trace.
 type Contours struct {
 	Nodes    []ContourNode
 	Contours []Contour
 }
 
-// Trace finds the contours of the intersections in a pose. Its pairs of edges and triangles are found
-// first, in place of those of the last query.
+// Trace finds the contours of the intersections in a pose. Its pairs of edges and triangles are
+// found first, in place of those of the last query.
 func Trace[T Scalar](w *Workspace, pose [][3]T) (Contours, error) {
 	var count C.uint64_t
 	for {

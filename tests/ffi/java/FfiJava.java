@@ -753,8 +753,8 @@ public final class FfiJava {
     }
 
     /**
-     * Meetings as pairs of the one mesh of two objects, sorted; firstA, firstB: the numbers there of
-     * what is the second object's first.
+     * Meetings as pairs of the one mesh of two objects, sorted; firstA, firstB: the numbers there
+     * of what is the second object's first.
      */
     static List<String> joined(List<Meeting> meetings, int firstA, int firstB) {
         return meetings.stream()

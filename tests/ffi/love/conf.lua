@@ -1,4 +1,5 @@
--- The modules that the sample needs: no window, no graphics, no sound, so it runs without a display.
+-- The modules that the sample needs: no window, no graphics, no sound, so it runs without a
+-- display.
 --
 -- SPDX-License-Identifier: MIT
 function love.conf(t)

@@ -31,8 +31,8 @@ function example.moved(mesh)
     return pose
 end
 
--- { rest = { "a b", ... }, moved = { ... }, nearfaces = ..., node = ..., contour = { "count begin end
--- length", ... } }
+-- { rest = { "a b", ... }, moved = { ... }, nearfaces = ..., node = ..., contour = { "count begin
+-- end length", ... } }
 function example.golden(path)
     local golden = {}
     for line in io.lines(path) do
@@ -59,7 +59,8 @@ local function close(a, b)
     return math.abs(a - b) <= 1e-12 * b
 end
 
--- Whether these are the golden contours: nodes, and of contours number of nodes, begin, end and length.
+-- Whether these are the golden contours: nodes, and of contours number of nodes, begin, end and
+-- length.
 function example.same_contours(golden, traced)
     if traced.node_count ~= #golden.node or traced.contour_count ~= #golden.contour then return false end
     for i = 1, #golden.node do
@@ -94,7 +95,8 @@ function example.lengths_fit(traced, closed)
     return traced.node_count == following
 end
 
--- Counts checks: check(what, condition); check.finish(name) prints the sum and returns the failures.
+-- Counts checks: check(what, condition); check.finish(name) prints the sum and returns the
+-- failures.
 function example.checks()
     local passed, failed = 0, 0
     local checks = {}

@@ -1,5 +1,5 @@
--- starcontour for LuaJIT, as an engine binds it: the declarations are read out of starcontour.h when
--- the program starts, so structures are the header's and need no copying.
+-- starcontour for LuaJIT, as an engine binds it: the declarations are read out of starcontour.h
+-- when the program starts, so structures are the header's and need no copying.
 --
 --     local sc = require("starcontour").load(header, library)
 --     local model = sc.build(vertices, vertex_count, triangles, triangle_count)
@@ -22,10 +22,10 @@
 --         -- meeting.pairs[0] to meeting.pairs[meeting.count - 1], of a step meeting.times likewise
 --     end
 --
--- Vertices and poses are cdata arrays of float or double, three a vertex, triangles of uint32_t; they
--- are read in place. What query returns stays as it is until the next query of the same workspace.
--- Errors of the library are Lua errors: tables with status and message. What is not wrapped is in
--- sc.C.
+-- Vertices and poses are cdata arrays of float or double, three a vertex, triangles of uint32_t;
+-- they are read in place. What query returns stays as it is until the next query of the same
+-- workspace. Errors of the library are Lua errors: tables with status and message. What is not
+-- wrapped is in sc.C.
 --
 -- SPDX-License-Identifier: MIT
 local ffi = require("ffi")
@@ -137,8 +137,8 @@ function starcontour.load(header, library)
         end
     end
 
-    -- What collides on the way from one pose to another. options: members of sc_step_options by name,
-    -- or nil: all pairs with their times. The result stays until the next step or near.
+    -- What collides on the way from one pose to another. options: members of sc_step_options by
+    -- name, or nil: all pairs with their times. The result stays until the next step or near.
     function Workspace:step(from, to, vertex_count, options)
         local start, goal = pose_of(from, vertex_count), pose_of(to, vertex_count)
         local asked = sized("sc_step_options", options or { times = C.SC_STEP_TIMES_EACH })
@@ -156,9 +156,9 @@ function starcontour.load(header, library)
         end)
     end
 
-    -- Contours of the intersections in a pose. Its pairs of edges and triangles are found first, in place
-    -- of those of the last query. options: members of sc_trace_options by name, or nil; simd, tasks and
-    -- cancel are the query's, too. The result stays until the next trace.
+    -- Contours of the intersections in a pose. Its pairs of edges and triangles are found first, in
+    -- place of those of the last query. options: members of sc_trace_options by name, or nil; simd,
+    -- tasks and cancel are the query's, too. The result stays until the next trace.
     function Workspace:trace(positions, vertex_count, options)
         local pose, asked = pose_of(positions, vertex_count), sized("sc_trace_options", options)
         local pairs, count = self:query(positions, vertex_count, {
@@ -266,8 +266,8 @@ function starcontour.load(header, library)
         return scene.lenders[model] or nil
     end
 
-    -- A new object, without a pose. options: members of sc_object by name, such as itself (1, if it is
-    -- not given) and group, or nil; they may be changed later, in the object's options.
+    -- A new object, without a pose. options: members of sc_object by name, such as itself (1, if it
+    -- is not given) and group, or nil; they may be changed later, in the object's options.
     function Scene:add(model, options)
         local lender = lender_for(self, model)
         local object = { model = model, workspace = model:workspace(options_with(self, 0, lender)),
@@ -278,8 +278,8 @@ function starcontour.load(header, library)
         return setmetatable(object, Object)
     end
 
-    -- Asks until the arrays of all lists are long enough. Each list becomes a table of meetings, which
-    -- stay until the scene's next question.
+    -- Asks until the arrays of all lists are long enough. Each list becomes a table of meetings,
+    -- which stay until the scene's next question.
     function Scene:ask(lists, moves, question)
         local array = ffi.new("sc_object[?]", #self.objects)
         for i, object in ipairs(self.objects) do
@@ -337,8 +337,8 @@ function starcontour.load(header, library)
         end)
     end
 
-    -- What is within a distance: meetings of vertices and triangles, and of edges. options: members of
-    -- sc_near_options by name, or nil.
+    -- What is within a distance: meetings of vertices and triangles, and of edges. options: members
+    -- of sc_near_options by name, or nil.
     function Scene:near(distance, options)
         local asked, result = sized("sc_near_options", options), sized("sc_objects_lists")
         asked.distance = distance
@@ -347,8 +347,8 @@ function starcontour.load(header, library)
         end)
     end
 
-    -- What collides while objects move from their pose to their end: the same two lists, and the time
-    -- before which nothing does. options: members of sc_step_options by name, or nil.
+    -- What collides while objects move from their pose to their end: the same two lists, and the
+    -- time before which nothing does. options: members of sc_step_options by name, or nil.
     function Scene:step(options)
         local asked, result = sized("sc_step_options", options), sized("sc_objects_lists")
         asked.times = C.SC_STEP_TIMES_EACH

@@ -1,14 +1,16 @@
-// A broad phase for ipc-toolkit (C++) on starcontour: contacts within a distance, and those of a step.
+// A broad phase for ipc-toolkit (C++) on starcontour: contacts within a distance, and those of a
+// step.
 //
 //     starcontour_ipc::BroadPhase broad_phase(rest, faces);       once per topology
 //     collisions.build(mesh, vertices, dhat, 0, &broad_phase);    NormalCollisions
 //     candidates.build(mesh, start, end, 0, &broad_phase);        Candidates, for step sizes
 //
-// For the headers of ipc-toolkit 1.6 and starcontour.hpp, the header for C++17. Where ipc-toolkit looks
-// for boxes that overlap, this asks what is within the distance (sc_query_near), or what may come
-// together on the way from one pose to another (sc_query_step, candidates). Pairs of which
-// can_vertices_collide refuses all vertices are left out. Only triangle meshes: each edge is one of a
-// face, and each vertex of one. Like any broad phase of ipc-toolkit, one object serves one thread.
+// For the headers of ipc-toolkit 1.6 and starcontour.hpp, the header for C++17. Where ipc-toolkit
+// looks for boxes that overlap, this asks what is within the distance (sc_query_near), or what may
+// come together on the way from one pose to another (sc_query_step, candidates). Pairs of which
+// can_vertices_collide refuses all vertices are left out. Only triangle meshes: each edge is one of
+// a face, and each vertex of one. Like any broad phase of ipc-toolkit, one object serves one
+// thread.
 //
 // SPDX-License-Identifier: MIT
 #ifndef STARCONTOUR_BROAD_PHASE_HPP

@@ -1,5 +1,5 @@
-// starcontour_broad_phase.hpp on a mesh whose distances are known, by the headers of ipc-toolkit or by
-// those of stand_in/. Exit status 1 if anything is wrong.
+// starcontour_broad_phase.hpp on a mesh whose distances are known, by the headers of ipc-toolkit or
+// by those of stand_in/. Exit status 1 if anything is wrong.
 //
 // SPDX-License-Identifier: MIT
 #include "starcontour_broad_phase.hpp"
@@ -53,9 +53,9 @@ bool refused(const std::function<void()> &call)
 
 int main()
 {
-    // A square of two faces, 0 and 1, and above it a small face, half a unit higher. Its corners are
-    // above face 0; those but the first are 0.866 from face 1, and its edges from their common edge,
-    // and 1.118 or more from the other edges.
+    // A square of two faces, 0 and 1, and above it a small face, half a unit higher. Its corners
+    // are above face 0; those but the first are 0.866 from face 1, and its edges from their common
+    // edge, and 1.118 or more from the other edges.
     Eigen::MatrixXd rest(7, 3), fallen;
     rest << 0, 0, 0, 4, 0, 0, 0, 4, 0, 4, 4, 0, 1, 1, 0.5, 2, 1, 0.5, 1, 2, 0.5;
     fallen = rest;

@@ -5,8 +5,8 @@
 #     tools/packaging/debian/make_source.sh FOLDER     from the top of the repository
 #
 # In FOLDER are then starcontour_VERSION.orig.tar.gz and starcontour-VERSION, in which
-# `dpkg-buildpackage -us -uc` builds all packages. Whoever uploads them to an archive puts an address of
-# their own into control and changelog, and for Debian's own the sources of three.js into
+# `dpkg-buildpackage -us -uc` builds all packages. Whoever uploads them to an archive puts an
+# address of their own into control and changelog, and for Debian's own the sources of three.js into
 # debian/missing-sources (see debian/source/lintian-overrides).
 #
 # SPDX-License-Identifier: MIT

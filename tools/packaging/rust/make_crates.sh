@@ -5,9 +5,9 @@
 #
 #     tools/packaging/rust/make_crates.sh FOLDER       from the top of the repository
 #
-# FOLDER is a workspace of both: there `cargo package --workspace` works with cargo 1.90 or newer, as
-# should `cargo publish --workspace`. An older one has to publish the first before it can pack the
-# second.
+# FOLDER is a workspace of both: there `cargo package --workspace` works with cargo 1.90 or newer,
+# as should `cargo publish --workspace`. An older one has to publish the first before it can pack
+# the second.
 #
 # SPDX-License-Identifier: MIT
 set -eu
@@ -36,8 +36,8 @@ cat >"$sys/README.md" <<'END'
 
 The C library starcontour, which finds every self-collision of a deforming triangle mesh, compiled
 along (a C compiler is needed, nothing else), and its declarations in Rust: those that the crate
-`starcontour`, a safe wrapper, needs. `core/starcontour.h` is the manual. Dependent build scripts get
-the header's folder as `DEP_STARCONTOUR_INCLUDE`.
+`starcontour`, a safe wrapper, needs. `core/starcontour.h` is the manual. Dependent build scripts
+get the header's folder as `DEP_STARCONTOUR_INCLUDE`.
 END
 
 cp $here/starcontour.toml "$safe/Cargo.toml"

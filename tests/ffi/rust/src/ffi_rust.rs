@@ -63,8 +63,8 @@ fn lengths_fit(found: &Contours) -> bool {
     fits && next == found.nodes.len() as u64
 }
 
-/// Meetings as pairs of the one mesh of two objects, sorted; firsts: the numbers there of what is the
-/// second object's first a and first b.
+/// Meetings as pairs of the one mesh of two objects, sorted; firsts: the numbers there of what is
+/// the second object's first a and first b.
 fn joined(meetings: &[Meeting], firsts: [usize; 2]) -> Vec<Pair> {
     let of_one = |m: &Meeting| {
         let add = [m.a * firsts[0], m.b * firsts[1]].map(|n| n as u32);

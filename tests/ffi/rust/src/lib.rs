@@ -72,7 +72,8 @@ macro_rules! errors {
                 }
             }
 
-            /// Names and numbers of all but `Other`, for the test that compares them with the header.
+            /// Names and numbers of all but `Other`, for the test that compares them with the
+            /// header.
             #[doc(hidden)]
             pub const NAMES: &'static [(&'static str, i32)] = &[$((stringify!($name), $code)),*];
         }
@@ -144,8 +145,8 @@ errors! {
 pub const WORKSPACE_STEP: u32 = 1;
 pub const WORKSPACE_NEAR: u32 = 2;
 
-/// Where a contour begins and ends: nowhere, at an edge of one triangle, at an edge of three or more
-/// triangles, or at a vertex that both triangles share.
+/// Where a contour begins and ends: nowhere, at an edge of one triangle, at an edge of three or
+/// more triangles, or at a vertex that both triangles share.
 pub const TRACE_CLOSED: u32 = 0;
 pub const TRACE_BORDER: u32 = 1;
 pub const TRACE_BRANCH: u32 = 2;

@@ -33,8 +33,8 @@ pub struct FeatureMeetings<'scene> {
     pub earliest: f64,
 }
 
-/// An object of a scene. It keeps a copy of its positions: so none can change unseen, and what is not
-/// set again is not read again.
+/// An object of a scene. It keeps a copy of its positions: so none can change unseen, and what is
+/// not set again is not read again.
 #[derive(Debug)]
 pub struct Object {
     /// Whether its pairs with itself are wanted.
@@ -116,7 +116,8 @@ impl Room {
     }
 }
 
-/// Several objects, which may share models. Each has a number, in the order in which they were added.
+/// Several objects, which may share models. Each has a number, in the order in which they were
+/// added.
 #[derive(Debug)]
 pub struct Scene<'model> {
     flags: u32,
@@ -208,9 +209,9 @@ impl<'model> Scene<'model> {
         })
     }
 
-    /// Asks until all arrays are long enough. What a question is given is sound: models and workspaces
-    /// are alive, workspaces are ours alone and each in one object, arrays are as long as stated, and
-    /// none changes as long as its version does not.
+    /// Asks until all arrays are long enough. What a question is given is sound: models and
+    /// workspaces are alive, workspaces are ours alone and each in one object, arrays are as long
+    /// as stated, and none changes as long as its version does not.
     fn ask(
         &mut self,
         moves: bool,

@@ -1,5 +1,6 @@
-// No part of ipc-toolkit: what starcontour_broad_phase.hpp needs of its interface (1.6), so that it can
-// be compiled and tried where ipc-toolkit is not installed. The base class finds nothing itself.
+// No part of ipc-toolkit: what starcontour_broad_phase.hpp needs of its interface (1.6), so that it
+// can be compiled and tried where ipc-toolkit is not installed. The base class finds nothing
+// itself.
 //
 // SPDX-License-Identifier: MIT
 #pragma once
