@@ -720,9 +720,10 @@ enum {
     SC_TASK_COUNT = 9
 };
 
-/* Statistics of one query. SC_METHOD_AABB and _AABB_SCTT file their work under ..._ORIENTATION.
-   Tests after failed contour tests are done together with others: they are counted each by itself,
-   and the time of both is divided as these counts are. */
+/* Statistics of one query. SC_METHOD_AABB and _AABB_SCTT file their work under ..._ORIENTATION, and
+   on a full model that on normal cones as the other methods do. Tests after failed contour tests
+   are done together with others: they are counted each by itself, and the time of both is divided
+   as these counts are. */
 typedef struct sc_stats {
     uint32_t struct_size;
     uint32_t reserved;
