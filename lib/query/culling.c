@@ -213,8 +213,7 @@ static void leave_all_of_node(sc_worker *w, const sc_node *n, int follows)
 static int have_room_for_node(const sc_worker *w)
 {
     const uint32_t *count = w->lists.count;
-    return count[SC_LIST_LEFT] < SC_LEFT_ENOUGH && count[SC_LIST_ROWS] < SC_ROWS_ENOUGH &&
-           count[SC_LIST_NEAR] < SC_LEAF_LIST_ENOUGH;
+    return count[SC_LIST_LEFT] < SC_LEFT_ENOUGH && count[SC_LIST_ROWS] < SC_ROWS_ENOUGH;
 }
 
 void sc_culling_take_spans(sc_worker *w, uint32_t most)

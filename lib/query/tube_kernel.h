@@ -222,14 +222,13 @@ static int are_bands(const sc_worker *w, uint32_t a, uint32_t b)
 static void drop_bands(sc_worker *w, sc_cluster_pair *pairs, uint32_t count)
 {
     uint8_t *marks = w->last.marks + sc_model_first_leaf_patch(w->model);
-    const int may_look = !w->share; /* else it depends on who does what which are marked by now */
     uint32_t i;
     int pass;
     for (pass = 0; pass < 2; pass++) {
         for (i = 0; i < count; i++) {
             sc_cluster_pair *p = pairs + i;
             if (!(p->known & SC_TOUCH_CHAIN) || (p->a == p->b) != pass) continue;
-            if (pass ? (may_look && marks[p->a]) || is_band(w, p->a) : are_bands(w, p->a, p->b)) {
+            if (pass ? is_band(w, p->a) : are_bands(w, p->a, p->b)) {
                 marks[p->a] = marks[p->b] = 1;
                 p->known |= SC_CLUSTERS_DROPPED;
             }
