@@ -233,9 +233,8 @@ static void pass_by_digit(digit_sort *s, uint32_t count)
     sc_jobs_loop(s->tasks, count, DIGIT_PAIRS_MIN, move_by_digit, s);
 }
 
-/* By some bits of the number of a pair, from lowest on; returns where the sorted ones are. */
-static sc_pair *pass_by_digits(sc_pair *from, sc_pair *to, uint32_t count, unsigned lowest,
-                               unsigned bits, const sc_tasks *tasks, uint32_t *room)
+sc_pair *sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint32_t count, unsigned bits,
+                           const sc_tasks *tasks, uint32_t *room)
 {
     uint32_t of_one[DIGIT_VALUES];
     digit_sort s;
@@ -243,21 +242,15 @@ static sc_pair *pass_by_digits(sc_pair *from, sc_pair *to, uint32_t count, unsig
     s.tasks = tasks;
     s.first = tasks ? room : of_one;
     for (done = 0; done < bits; done += DIGIT_BITS) {
-        sc_pair *swapped = from;
-        s.from = from;
-        s.to = to;
-        s.shift = lowest + done;
+        sc_pair *swapped = pairs;
+        s.from = pairs;
+        s.to = spare;
+        s.shift = 32 + done;
         pass_by_digit(&s, count);
-        from = to;
-        to = swapped;
+        pairs = spare;
+        spare = swapped;
     }
-    return from;
-}
-
-sc_pair *sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint32_t count, unsigned bits,
-                           const sc_tasks *tasks, uint32_t *room)
-{
-    return pass_by_digits(pairs, spare, count, 32, bits, tasks, room);
+    return pairs;
 }
 
 uint32_t sc_sort_digits_room(uint32_t count)
@@ -273,6 +266,67 @@ static unsigned bits_of(uint32_t number)
     return bits;
 }
 
+/* A digit of the number of a pair, and where in the counts those of its values begin. */
+typedef struct digit {
+    unsigned shift, first;
+    uint32_t last; /* its largest value */
+} digit;
+
+/* Bits of a digit where all are counted at once: ten, or eight where that would be more than four
+   digits. So there are at most eight digits, with 4096 values: 16 KB of stack. */
+enum { COUNTED_MOST = 8, COUNTED_VALUES = 4 << DIGIT_BITS };
+
+/* The digits for some bits from lowest on, as equal as can be, of so many bits at most, behind those
+   that are there; returns how many there are then. */
+static unsigned choose_digits(unsigned bits, unsigned lowest, unsigned most, digit *digits,
+                              unsigned count)
+{
+    unsigned some = (bits + most - 1) / most;
+    for (; some > 0; some--, count++) {
+        const unsigned width = (bits + some - 1) / some;
+        digits[count].shift = lowest;
+        digits[count].last = (1u << width) - 1u;
+        digits[count].first = count ? digits[count - 1].first + digits[count - 1].last + 1 : 0;
+        lowest += width;
+        bits -= width;
+    }
+    return count;
+}
+
+/* Sorts by so many of the lowest bits of b, then of a: counts all digits at once, then moves pairs
+   by one after the other. Returns where the sorted ones are. */
+static sc_pair *sort_by_both(sc_pair *from, sc_pair *to, uint64_t count, unsigned bits_a,
+                             unsigned bits_b)
+{
+    const unsigned most = bits_a > 2 * DIGIT_BITS || bits_b > 2 * DIGIT_BITS ? 8 : DIGIT_BITS;
+    uint32_t next[COUNTED_VALUES];
+    digit digits[COUNTED_MOST];
+    unsigned some = choose_digits(bits_b, 0, most, digits, 0), d;
+    uint64_t i;
+    some = choose_digits(bits_a, 32, most, digits, some);
+    memset(next, 0, (digits[some - 1].first + digits[some - 1].last + 1) * sizeof *next);
+    for (i = 0; i < count; i++) {
+        const uint64_t number = sc_sort_number(from[i]);
+        for (d = 0; d < some; d++)
+            next[digits[d].first + (number >> digits[d].shift & digits[d].last)]++;
+    }
+    for (d = 0; d < some; d++) {
+        const unsigned shift = digits[d].shift;
+        const uint32_t last = digits[d].last;
+        uint32_t *at = next + digits[d].first, sum = 0, value;
+        sc_pair *swapped = from;
+        for (value = 0; value <= last; value++) {
+            const uint32_t same = at[value];
+            at[value] = sum;
+            sum += same;
+        }
+        for (i = 0; i < count; i++) to[at[sc_sort_number(from[i]) >> shift & last]++] = from[i];
+        from = to;
+        to = swapped;
+    }
+    return from;
+}
+
 void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count)
 {
     uint64_t i, differ = 0;
@@ -283,13 +337,16 @@ void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count)
         return;
     }
     for (i = 1; i < count; i++) differ |= sc_sort_number(pairs[i]) ^ sc_sort_number(pairs[0]);
+    if (!differ) return;
     bits_a = bits_of((uint32_t)(differ >> 32));
     bits_b = bits_of((uint32_t)differ);
-    /* where many have the same a, by b as well; else what is left is near its place */
-    if (count >> bits_a >= SAME_FEW)
-        sorted = pass_by_digits(pairs, spare, (uint32_t)count, 0, bits_b, NULL, NULL);
-    sorted = pass_by_digits(sorted, sorted == pairs ? spare : pairs, (uint32_t)count, 32, bits_a,
-                            NULL, NULL);
+    if (count >> bits_a >= SAME_FEW) {
+        sorted = sort_by_both(pairs, spare, count, bits_a, bits_b);
+        if (sorted != pairs) memcpy(pairs, sorted, (size_t)count * sizeof *pairs);
+        return;
+    }
+    /* few have the same a: what is left is near its place */
+    sorted = sc_sort_by_digits(pairs, spare, (uint32_t)count, bits_a, NULL, NULL);
     if (sorted != pairs) memcpy(pairs, sorted, (size_t)count * sizeof *pairs);
     if (!insertion_sort(pairs, count, 4 * count)) sc_sort_pairs(pairs, count);
 }
