@@ -1403,7 +1403,8 @@ enum {
     SC_NEAR_METHOD_DEFAULT = 0,
     SC_NEAR_METHOD_SCTT = 1, /* self-collision test tree: contours that are simple with a clearance
                                 of the distance cull what is smooth, where the distance is below the
-                                altitudes of triangles */
+                                altitudes of triangles. Where a sample says that it hardly ever is,
+                                the plain tree is taken */
     SC_NEAR_METHOD_BOXES = 2 /* the plain tree of boxes */
 };
 

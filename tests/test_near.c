@@ -629,7 +629,52 @@ static void none_apart_and_all(void)
     CHECK_MSG(touching > 0 && all > touching, "%" PRIu64 " of %" PRIu64, touching, all);
 }
 
+/* Contours are looked for unless most leaf clusters have triangles that are lower than the distance:
+   a cloth of cells of 1 x 1, altitudes 0.707, of which a part is stretched, to 0.99. */
+static void wide_distances(void)
+{
+    static const struct {
+        uint32_t stretched; /* of 40 columns */
+        double distance;
+        int looks;
+    } cases[] = {{0, 0.1, 1},  {0, 0.65, 1},  {0, 0.75, 0},  {0, 3, 0},
+                 {4, 0.75, 0}, {16, 0.65, 1}, {16, 0.75, 1}, {16, 1.1, 0}};
+    for (uint32_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        const double from = 40 - (double)cases[i].stretched;
+        soup cloth = soup_cloth(40, 40);
+        sc_mesh mesh;
+        sc_pose pose;
+        sc_model *model = NULL;
+        near_question q = {"stretched", NULL, NULL, &pose, 0};
+        for (uint32_t v = 0; v < cloth.vertex_count; ++v) {
+            double *p = cloth.positions + 3 * (size_t)v;
+            p[0] *= 40;
+            p[1] *= 40;
+            if (p[0] > from) p[0] = from + 8 * (p[0] - from);
+        }
+        mesh = input_plain_mesh(&cloth);
+        pose = input_plain_pose(cloth.positions, cloth.vertex_count);
+        if (!CHECK(sc_build(&mesh, NULL, &model) == SC_OK)) return;
+        q.model = model;
+        q.workspace = near_workspace(model, 1);
+        for (int way = 0; way < NEAR_WAYS; ++way) {
+            sc_near_options options = near_options_for(&near_ways[way], cases[i].distance);
+            near_answer all;
+            if (!near_way_is_there(&near_ways[way], model, q.workspace, &pose)) continue;
+            all = near_ask_all(&q, &options);
+            CHECK_MSG((all.stats.nodes_visited > 0) ==
+                          (cases[i].looks && options.method != SC_NEAR_METHOD_BOXES),
+                      "case %" PRIu32 ", %s: %" PRIu64 " nodes", i, near_ways[way].name,
+                      all.stats.nodes_visited);
+            near_answer_free(&all);
+        }
+        sc_workspace_free(q.workspace);
+        sc_model_free(model);
+        soup_free(&cloth);
+    }
+}
+
 SC_TEST_MAIN(SC_TEST(any_scene), SC_TEST(poses_of_steps), SC_TEST(adversaries),
              SC_TEST(soups_on_grids), SC_TEST(ties_on_flat_grids), SC_TEST(points_at_the_distance),
              SC_TEST(layers_at_the_distance), SC_TEST(many_edges_in_a_leaf),
-             SC_TEST(none_apart_and_all))
+             SC_TEST(none_apart_and_all), SC_TEST(wide_distances))

@@ -598,7 +598,7 @@ static void ask_function(const sc_filter *f, sc_worker *w)
 static int find_pairs(sc_workspace *workspace, sc_worker *worker, const sc_tasks *tasks, plan *p)
 {
     const sc_question *question = worker->question;
-    const sc_query_options *o = &question->options;
+    const sc_query_options *o = &p->question.options;
     memset(p, 0, sizeof *p);
     p->workspace = workspace;
     p->room = &workspace->plan;
@@ -610,6 +610,12 @@ static int find_pairs(sc_workspace *workspace, sc_worker *worker, const sc_tasks
         p->filter = *question->filter;
         p->filter.accept = NULL;
         p->question.filter = &p->filter;
+    }
+    /* then the plain tree does what the test tree would, and sooner */
+    if (question->has_last && question->step && sc_motion_is_wide(worker->model, worker->frame)) {
+        p->question.options.method = SC_METHOD_AABB;
+        p->question.has_last = 0;
+        worker->question = &p->question;
     }
     begin_workers(p);
     if (p->question.has_last) make_cones(p->w);

@@ -194,6 +194,49 @@ static void join_boxes(const sc_model *model, sc_motion *m, uint32_t first, uint
         }
 }
 
+/* Leaf clusters that are looked at, all over the mesh, and one in how many may be without a low
+   triangle. */
+enum { LEAVES_SEEN = 128, LEAVES_HIGH = 4 };
+
+/* Whether the least altitude of a triangle at the start is at most the distance; unit: the points
+   of the motion. */
+static int is_low(const uint32_t corner[3], const float *unit, float distance)
+{
+    float e[3][3], n[3], longest = 0, square = 0;
+    int i, k;
+    for (i = 0; i < 3; i++) {
+        const float *p = unit + 8 * (uint64_t)corner[i];
+        const float *q = unit + 8 * (uint64_t)corner[(i + 1) % 3];
+        for (k = 0; k < 3; k++) e[i][k] = q[k] - p[k];
+        square = e[i][0] * e[i][0] + e[i][1] * e[i][1] + e[i][2] * e[i][2];
+        longest = square > longest ? square : longest;
+    }
+    for (k = 0; k < 3; k++)
+        n[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] - e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
+    square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+    return square <= distance * distance * longest;
+}
+
+static int has_low(const sc_model *model, const sc_frame *frame, uint32_t leaf)
+{
+    const uint32_t *first = sc_model_leaf_first(model) + leaf;
+    uint32_t i;
+    for (i = first[0]; i < first[1]; i++)
+        if (is_low(sc_model_triangle(model) + 3 * (uint64_t)i, frame->motion.unit,
+                   frame->motion.distance))
+            return 1;
+    return 0;
+}
+
+int sc_motion_is_wide(const sc_model *model, const sc_frame *frame)
+{
+    const uint32_t leaves = model->leaf_count, some = leaves < LEAVES_SEEN ? leaves : LEAVES_SEEN;
+    uint32_t i, high = 0;
+    for (i = 0; i < some && high <= some / LEAVES_HIGH; i++)
+        high += !has_low(model, frame, (uint32_t)((uint64_t)i * leaves / some));
+    return high <= some / LEAVES_HIGH;
+}
+
 static void refit_step(void *context, uint32_t level, uint32_t first, uint32_t end)
 {
     const motion_pass *pass = (const motion_pass *)context;
