@@ -13,7 +13,9 @@
  *
  * A vertex belongs to the first leaf cluster that has it, an edge to the triangle that names it: so
  * each vertex meets each triangle, and each edge each other edge, in one pair of leaf clusters, or
- * in one with itself. What shares a point is left out.
+ * in one with itself. What shares a point is left out. Masks leave out more, and where there are
+ * some they are looked at before rows: they and the boxes of what is left strike out most pairs of
+ * leaf clusters that are neighbors on the mesh.
  */
 
 /* Slabs of triangles pay where the distance is below this times the extents of triangles. */
@@ -21,6 +23,10 @@
 
 /* Pairs that are listed before their distances are computed, and what one row adds. */
 enum { NEAR_LISTED = 256, NEAR_ROW = SC_NEAR_EDGES };
+
+/* So many pairs of leaf clusters are fetched before they are looked at, with masks 0.9 of the time:
+   of each cluster so many bytes, up to where its slab is. */
+enum { NEAR_AHEAD = 16, NEAR_LEAF_FIRST = 448 };
 
 /* Of two leaf clusters: point a and triangle b; or edges a and b, with their ends. */
 typedef struct near_list {
@@ -34,6 +40,8 @@ typedef struct near_side {
     const sc_near_leaf *leaf;
     unsigned points, triangles;      /* bits of those that are left */
     uint64_t edges;
+    unsigned faces, among;           /* what masks leave: triangles with points of the other; and
+                                        points that all that is left has its points among */
     unsigned beyond[SC_LEAF_MAX];    /* of slabs of these triangles: points of the other */
     uint16_t shared[SC_LEAF_POINTS]; /* which points of the other each point is, or is so near to on
                                         the mesh that it is not wanted */
@@ -113,6 +121,16 @@ static inline uint64_t near_edges_left(const sc_near_leaf *a, uint64_t edges,
     return left & edges;
 }
 
+/* Those that have both ends among some points. */
+static inline uint64_t near_edges_within(const sc_near_leaf *a, uint64_t edges, unsigned points)
+{
+    uint64_t within = 0;
+    uint32_t first;
+    for (first = 0; edges >> first; first += SC_LEAF_MAX)
+        within |= (uint64_t)lanes_within(lanes_sets_load(a->ends + first), points) << first;
+    return within & edges;
+}
+
 static inline uint64_t all_near_edges(const sc_near_leaf *a)
 {
     return ((uint64_t)1 << a->edges) - 1;
@@ -141,6 +159,76 @@ static inline void take_near_masks(const sc_leaf_mask *mask, near_side *a, near_
         memset(a->shared, 0, sizeof a->shared);
         memset(b->shared, 0, sizeof b->shared);
     }
+}
+
+/* The points of triangles that are left. */
+static inline unsigned corners_of_near(const near_side *a)
+{
+    return lanes_sets_all(lanes_sets_load(a->leaf->corners), a->triangles);
+}
+
+/* Leaves of one only what has all its points among some; triangles stay, as sides of theirs may. */
+static inline void leave_within(near_side *a, unsigned points)
+{
+    a->among = points;
+    a->points &= points;
+    a->faces &= lanes_within(lanes_sets_load(a->leaf->corners), points);
+    a->edges = near_edges_within(a->leaf, a->edges, points);
+}
+
+/* Leaves of two leaf clusters what masks leave some of the other of; 0: nothing. A pair is wanted
+   only if no point of the one is near on the mesh to one of the other. So a point goes that is near
+   to all that the other may still have, and with it what has that point. */
+static inline int leave_by_masks(near_side *a, near_side *b)
+{
+    const lanes_sets shared = lanes_sets_load(a->shared), other = lanes_sets_load(b->shared);
+    const unsigned first = a->among & ~lanes_holding(shared, b->among);
+    leave_within(b, b->among & ~lanes_holding(other, first));
+    leave_within(a, first & ~lanes_holding(shared, b->among));
+    return (a->points && b->faces) || (b->points && a->faces) || (a->edges && b->edges);
+}
+
+/* The box of some points, moved outwards by a margin. */
+static inline void box_of_near(const sc_near_leaf *a, unsigned points, float margin, float box[6])
+{
+    uint8_t number[2 * SC_LANES_COUNT];
+    const uint32_t count = lanes_list(points, number);
+    lanes_index some;
+    int k;
+    lanes_bytes_store(number + count, lanes_bytes_all(number[0]));
+    some = lanes_index_load(number);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        const lanes at = lanes_pick(a->at[k], some);
+        box[k] = lanes_least(at) - margin;
+        box[3 + k] = lanes_most(at) + margin;
+    }
+}
+
+/* Leaves of what is left of one what a box does not tell apart from it. */
+static inline void leave_by_box(near_side *a, const float box[6])
+{
+    unsigned beyond[3];
+    beyond_near_box(a->leaf, box, beyond);
+    a->triangles &= left_of(lanes_sets_load(a->leaf->corners), beyond, 3);
+    a->faces &= a->triangles;
+    a->among &= corners_of_near(a);
+    a->points &= points_left(beyond, 3);
+    a->edges = near_edges_left(a->leaf, a->edges, beyond, 3);
+}
+
+/* Leaves what masks leave; then what the boxes of the rest leave, and of that what masks leave. */
+static inline int leave_by_masks_and_boxes(near_side *a, near_side *b, float margin)
+{
+    float box[2][6];
+    a->among = corners_of_near(a);
+    b->among = corners_of_near(b);
+    if (!leave_by_masks(a, b)) return 0;
+    box_of_near(a->leaf, a->among, margin, box[0]);
+    box_of_near(b->leaf, b->among, margin, box[1]);
+    leave_by_box(a, box[1]);
+    leave_by_box(b, box[0]);
+    return leave_by_masks(a, b);
 }
 
 /* Finds which points of two leaf clusters are the same. */
@@ -177,7 +265,6 @@ static inline void take_near_faces(near_search *s, const near_side *p, const nea
     const uint32_t turned = s->between && p == &s->b ? SC_STEP_TURNED : 0;
     unsigned near = judged & wanted, open = ~(judged | judged >> 16) & wanted;
     sc_pair some[SC_LANES_COUNT];
-    uint32_t count = 0;
     if (!s->names) {
         s->w->step->count[SC_STEP_VERTEX_FACE] += sc_bits_count(near);
         s->w->step->turned += turned ? sc_bits_count(near) : 0;
@@ -190,12 +277,16 @@ static inline void take_near_faces(near_search *s, const near_side *p, const nea
         inner.b = f->leaf->first + list->b[i];
         sc_near_candidates_take(s->w, SC_STEP_VERTEX_FACE, inner, bound_of_near(s, lane));
     }
-    for (; near; near &= near - 1) {
-        const uint32_t i = at + sc_bits_lowest(near);
-        some[count].a = p->leaf->point[list->a[i]] | turned;
-        some[count++].b = f->leaf->face[list->b[i]];
+    if (near) {
+        const uint32_t count = sc_bits_count(near);
+        sc_pair *const to = sc_step_pairs_place(s->w, SC_STEP_VERTEX_FACE, count, some), *pair = to;
+        for (; near; near &= near - 1, pair++) {
+            const uint32_t i = at + sc_bits_lowest(near);
+            pair->a = p->leaf->point[list->a[i]] | turned;
+            pair->b = f->leaf->face[list->b[i]];
+        }
+        sc_step_pairs_take_all(s->w, SC_STEP_VERTEX_FACE, to, count, some);
     }
-    if (count) sc_step_pairs_take_all(s->w, SC_STEP_VERTEX_FACE, some, count);
     for (; open; open &= open - 1) {
         const uint32_t i = at + sc_bits_lowest(open);
         sc_pair *to = &l->moving[0][l->count[SC_LIST_FACES]++];
@@ -224,7 +315,6 @@ static inline void take_near_edges(near_search *s, const near_list *list, uint32
     sc_lists *l = &s->w->lists;
     unsigned near = judged & wanted, open = ~(judged | judged >> 16) & wanted;
     sc_pair some[SC_LANES_COUNT];
-    uint32_t count = 0;
     if (!s->names) {
         s->w->step->count[SC_STEP_EDGE_EDGE] += sc_bits_count(near);
         near = 0;
@@ -236,13 +326,18 @@ static inline void take_near_edges(near_search *s, const near_list *list, uint32
         inner.b = inner_near_edge(b, list->b[i]);
         sc_near_candidates_take(s->w, SC_STEP_EDGE_EDGE, inner, bound_of_near(s, lane));
     }
-    for (; near; near &= near - 1, count++) {
-        const uint32_t i = at + sc_bits_lowest(near);
-        const uint32_t one = name_near_edge(a, list->a[i]), other = name_near_edge(b, list->b[i]);
-        some[count].a = one < other || s->between ? one : other;
-        some[count].b = one < other || s->between ? other : one;
+    if (near) {
+        const uint32_t count = sc_bits_count(near);
+        sc_pair *const to = sc_step_pairs_place(s->w, SC_STEP_EDGE_EDGE, count, some), *pair = to;
+        for (; near; near &= near - 1, pair++) {
+            const uint32_t i = at + sc_bits_lowest(near);
+            const uint32_t one = name_near_edge(a, list->a[i]);
+            const uint32_t other = name_near_edge(b, list->b[i]);
+            pair->a = one < other || s->between ? one : other;
+            pair->b = one < other || s->between ? other : one;
+        }
+        sc_step_pairs_take_all(s->w, SC_STEP_EDGE_EDGE, to, count, some);
     }
-    if (count) sc_step_pairs_take_all(s->w, SC_STEP_EDGE_EDGE, some, count);
     for (; open; open &= open - 1) {
         const uint32_t i = at + sc_bits_lowest(open);
         sc_pair *to = &l->moving[1][l->count[SC_LIST_EDGES]++];
@@ -327,12 +422,12 @@ static inline uint32_t compare_near_faces(near_search *s, const near_side *p, co
 {
     near_list list;
     const lanes margin = lanes_all(s->margin);
-    uint32_t rows = sc_bits_count(f->triangles);
-    unsigned some;
+    unsigned some = f->triangles & f->faces;
+    uint32_t rows = sc_bits_count(some);
     int k;
     list.count = 0;
     if (!p->points) return 0;
-    for (some = f->triangles; some; some &= some - 1) {
+    for (; some; some &= some - 1) {
         const uint32_t i = sc_bits_lowest(some);
         unsigned points = p->points;
         lanes_mask near[3];
@@ -559,12 +654,14 @@ static inline uint32_t compare_near_pair(near_search *s, const sc_near_leaf *a,
     uint32_t rows = 2;
     int slabs;
     if (!leave_of_near(&s->a, b) || !leave_of_near(&s->b, a)) return rows;
-    slabs = s->w->frame->motion.distance < NEAR_SLABS_PAY * (a->extent + b->extent);
-    if (slabs && !leave_by_slabs(&s->a, &s->b)) return rows;
     if (masks || s->between)
         take_near_masks(mask, &s->a, &s->b);
     else
         find_near_shared(&s->a, &s->b);
+    s->a.faces = s->b.faces = 0xffffu;
+    if (mask && !leave_by_masks_and_boxes(&s->a, &s->b, s->margin)) return rows;
+    slabs = s->w->frame->motion.distance < NEAR_SLABS_PAY * (a->extent + b->extent);
+    if (slabs && !leave_by_slabs(&s->a, &s->b)) return rows;
     if (s->kinds & SC_NEAR_VERTEX_FACE) {
         rows += compare_near_faces(s, &s->a, &s->b, slabs);
         rows += compare_near_faces(s, &s->b, &s->a, slabs);
@@ -573,26 +670,65 @@ static inline uint32_t compare_near_pair(near_search *s, const sc_near_leaf *a,
     return rows;
 }
 
+/* Two leaf clusters that are looked at soon, and their mask. */
+typedef struct near_coming {
+    uint32_t one, other, known;
+    int leaves;
+    const sc_leaf_mask *mask;
+} near_coming;
+
+/* Fetches what of a leaf cluster is looked at first. */
+static inline void fetch_near_leaf(const sc_worker *w, uint32_t leaf)
+{
+    const sc_near_leaf *a = w->near->leaves + (leaf & w->near->mask);
+    const char *from = (const char *)a;
+    uint32_t at;
+    for (at = 0; at < NEAR_LEAF_FIRST; at += 64) sc_fetch(from + at);
+}
+
+/* The next leaf clusters of the list, in their order, so that bounds of distances do not depend on
+   who listed them. */
+static inline void look_ahead_of_near(const sc_worker *w, uint32_t count, near_coming *coming)
+{
+    const sc_near_masks *masks = w->question->near->options.masks;
+    const sc_cluster_pair *p = w->lists.clusters + w->lists.count[SC_LIST_CLUSTERS];
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        near_coming *c = &coming[i];
+        --p;
+        c->one = p->a < p->b ? p->a : p->b;
+        c->other = p->a < p->b ? p->b : p->a;
+        c->known = p->known;
+        c->leaves = 1;
+        c->mask = masks ? sc_masks_find(masks, c->one, c->other, &c->leaves) : NULL;
+        if (c->mask) sc_fetch(c->mask);
+        fetch_near_leaf(w, c->one);
+        fetch_near_leaf(w, c->other);
+    }
+}
+
 static void decide_near_clusters(sc_worker *w, uint32_t most)
 {
     const sc_near_masks *masks = w->question->near->options.masks;
-    uint32_t *left = &w->lists.count[SC_LIST_CLUSTERS];
+    uint32_t *left = &w->lists.count[SC_LIST_CLUSTERS], coming = 0, at = 0;
+    near_coming next[NEAR_AHEAD];
     near_search s;
     begin_near_search(&s, w);
     for (; most && *left && have_room_for_near(w); most--) {
-        const sc_cluster_pair p = w->lists.clusters[--*left];
-        /* in their order, so that bounds of distances do not depend on who listed them */
-        const uint32_t one = p.a < p.b ? p.a : p.b, other = p.a < p.b ? p.b : p.a;
-        const sc_leaf_mask *mask = NULL;
+        const near_coming *p;
         const sc_near_leaf *a, *b;
-        int leaves = 1;
-        if (masks) mask = sc_masks_find(masks, one, other, &leaves);
-        if (!leaves) continue;
-        if (mask) sc_fetch(mask);
-        a = near_leaf(w, one);
-        b = other_near_leaf(w, one, other);
-        begin_near_pair(&s, p.known, a, b);
-        sc_worker_count_boxes(w, s.follows, compare_near_pair(&s, a, b, masks, mask));
+        if (at == coming) {
+            coming = *left < NEAR_AHEAD ? *left : NEAR_AHEAD;
+            look_ahead_of_near(w, coming, next);
+            at = 0;
+        }
+        p = &next[at++];
+        --*left;
+        if (!p->leaves) continue;
+        a = near_leaf(w, p->one);
+        b = other_near_leaf(w, p->one, p->other);
+        begin_near_pair(&s, p->known, a, b);
+        sc_worker_count_boxes(w, s.follows, compare_near_pair(&s, a, b, masks, p->mask));
     }
 }
 
@@ -629,6 +765,7 @@ static void decide_near_alone(sc_worker *w, uint32_t most)
         begin_near_pair(&s, item, a, a);
         s.a.points = a->own;
         s.a.triangles = a->triangles;
+        s.a.faces = 0xffffu;
         s.a.edges = all_near_edges(a);
         for (i = 0; i < SC_LEAF_POINTS; i++)
             s.a.shared[i] = (uint16_t)(mask ? mask->near[0][i] : 1u << i);

@@ -15,26 +15,26 @@ enum { SC_NEAR_EDGES = 3 * SC_LEAF_MAX };
 /* The derived data of a leaf cluster, in the unit box; see near/near_leaf_kernel.h. Rows are filled
    with the last point or triangle; edges with the first. */
 typedef struct sc_near_leaf {
-    float at[3][SC_LEAF_POINTS];  /* points */
-    float side[6][SC_LEAF_MAX];   /* boxes of triangles: lows, then highs */
-    float normal[3][SC_LEAF_MAX]; /* of triangles, and the slabs that these are in along them: */
-    float slab[2][SC_LEAF_MAX];   /* the ends, moved outwards by the distance and by what they are
-                                      off by */
-    float direction[3], leaf_slab[2]; /* the slab of all points, likewise */
+    float at[3][SC_LEAF_POINTS];      /* points */
+    uint16_t corners[SC_LEAF_MAX];    /* the corners of triangles, */
+    uint16_t ends[SC_NEAR_EDGES];     /* and the ends of edges, as bits of points */
     float box[6];                     /* of all points, moved outwards by the margin: lows, highs */
+    float direction[3], leaf_slab[2]; /* and the slab of all points, likewise */
     float extent;                     /* the largest extent of an edge along an axis */
     uint32_t leaf, first;             /* and the place of its first triangle */
+    uint16_t own;                     /* bit i: the leaf cluster is the first to have point i */
+    uint16_t triangles;               /* bit i: there is a triangle i */
+    uint16_t edges;                   /* how many */
+    uint16_t owned[3];                /* bit i of k: triangle i names its side k */
     const uint32_t *point;            /* SC_LEAF_POINTS: the caller's numbers of points */
     const uint32_t *face;             /* and of triangles */
     const uint8_t *corner;            /* 3 SC_LEAF_MAX: which points are corners of triangles */
     uint8_t end[2][SC_NEAR_EDGES];    /* and ends of edges: first sides 0, then 1, then 2 */
     uint8_t of[SC_NEAR_EDGES];        /* side k of triangle i as 16 k + i */
-    uint16_t corners[SC_LEAF_MAX];    /* the corners of triangles, */
-    uint16_t ends[SC_NEAR_EDGES];     /* and the ends of edges, as bits of points */
-    uint16_t owned[3];                /* bit i of k: triangle i names its side k */
-    uint16_t own;                     /* bit i: the leaf cluster is the first to have point i */
-    uint16_t triangles;               /* bit i: there is a triangle i */
-    uint16_t edges;                   /* how many */
+    float side[6][SC_LEAF_MAX];       /* boxes of triangles: lows, then highs */
+    float normal[3][SC_LEAF_MAX]; /* of triangles, and the slabs that these are in along them: */
+    float slab[2][SC_LEAF_MAX];   /* the ends, moved outwards by the distance and by what they
+                                     are off by */
 } sc_near_leaf;
 
 /* A worker has room of its own for that of so many leaf clusters: a power of two. */

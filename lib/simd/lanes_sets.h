@@ -5,7 +5,8 @@
  *
  * Number i is in a set if bit i is set. lanes_sets_load reads sixteen sets, lanes_sets_store writes
  * them, lanes_sets_of makes them of one number each, lanes_sets_join joins each two. lanes_within
- * tells which of them have no number that is not in one set.
+ * tells which of them have no number that is not in one set, lanes_holding which have all of it;
+ * lanes_sets_all joins those in some lanes.
  */
 #if SC_LANES_AVX512 || SC_LANES_AVX2
 
@@ -23,6 +24,13 @@ static inline lanes_sets lanes_sets_join(lanes_sets a, lanes_sets b)
 {
     return _mm256_or_si256(a, b);
 }
+static inline unsigned lanes_sets_joined(__m128i h)
+{
+    h = _mm_or_si128(h, _mm_unpackhi_epi64(h, h));
+    h = _mm_or_si128(h, _mm_shuffle_epi32(h, 1));
+    h = _mm_or_si128(h, _mm_srli_epi32(h, 16));
+    return (unsigned)_mm_cvtsi128_si32(h) & 0xffffu;
+}
 
 #  if SC_LANES_AVX512
 
@@ -34,6 +42,17 @@ static inline lanes_sets lanes_sets_of(const uint8_t *numbers)
 static inline unsigned lanes_within(lanes_sets a, unsigned set)
 {
     return _mm256_testn_epi16_mask(a, _mm256_set1_epi16((short)~set));
+}
+static inline unsigned lanes_holding(lanes_sets a, unsigned set)
+{
+    const __m256i all = _mm256_set1_epi16((short)set);
+    return _mm256_cmpeq_epi16_mask(_mm256_and_si256(a, all), all);
+}
+static inline unsigned lanes_sets_all(lanes_sets a, unsigned some)
+{
+    const __m256i x = _mm256_maskz_mov_epi16((__mmask16)some, a);
+    return lanes_sets_joined(
+        _mm_or_si128(_mm256_castsi256_si128(x), _mm256_extracti128_si256(x, 1)));
 }
 
 #  else
@@ -53,6 +72,22 @@ static inline unsigned lanes_within(lanes_sets a, unsigned set)
     return (unsigned)_mm_movemask_epi8(
         _mm_packs_epi16(_mm256_castsi256_si128(none), _mm256_extracti128_si256(none, 1)));
 }
+static inline unsigned lanes_holding(lanes_sets a, unsigned set)
+{
+    const __m256i all = _mm256_set1_epi16((short)set);
+    const __m256i each = _mm256_cmpeq_epi16(_mm256_and_si256(a, all), all);
+    return (unsigned)_mm_movemask_epi8(
+        _mm_packs_epi16(_mm256_castsi256_si128(each), _mm256_extracti128_si256(each, 1)));
+}
+static inline unsigned lanes_sets_all(lanes_sets a, unsigned some)
+{
+    const __m256i bits = _mm256_setr_epi16(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096,
+                                           8192, 16384, (short)-32768);
+    const __m256i set = _mm256_and_si256(_mm256_set1_epi16((short)some), bits);
+    const __m256i x = _mm256_and_si256(a, _mm256_cmpeq_epi16(set, bits));
+    return lanes_sets_joined(
+        _mm_or_si128(_mm256_castsi256_si128(x), _mm256_extracti128_si256(x, 1)));
+}
 
 #  endif
 
@@ -61,6 +96,14 @@ static inline unsigned lanes_within(lanes_sets a, unsigned set)
 typedef struct lanes_sets {
     __m128i v[2];
 } lanes_sets;
+
+static inline unsigned lanes_sets_joined(__m128i h)
+{
+    h = _mm_or_si128(h, _mm_unpackhi_epi64(h, h));
+    h = _mm_or_si128(h, _mm_shuffle_epi32(h, 1));
+    h = _mm_or_si128(h, _mm_srli_epi32(h, 16));
+    return (unsigned)_mm_cvtsi128_si32(h) & 0xffffu;
+}
 
 static inline lanes_sets lanes_sets_load(const uint16_t *sets)
 {
@@ -111,6 +154,23 @@ static inline unsigned lanes_within(lanes_sets a, unsigned set)
         _mm_packs_epi16(_mm_cmpeq_epi16(_mm_andnot_si128(all, a.v[0]), none),
                         _mm_cmpeq_epi16(_mm_andnot_si128(all, a.v[1]), none)));
 }
+static inline unsigned lanes_holding(lanes_sets a, unsigned set)
+{
+    const __m128i all = _mm_set1_epi16((short)set);
+    return (unsigned)_mm_movemask_epi8(
+        _mm_packs_epi16(_mm_cmpeq_epi16(_mm_and_si128(all, a.v[0]), all),
+                        _mm_cmpeq_epi16(_mm_and_si128(all, a.v[1]), all)));
+}
+static inline unsigned lanes_sets_all(lanes_sets a, unsigned some)
+{
+    const __m128i bits[2] = {
+        _mm_setr_epi16(1, 2, 4, 8, 16, 32, 64, 128),
+        _mm_setr_epi16(256, 512, 1024, 2048, 4096, 8192, 16384, (short)-32768)};
+    const __m128i each = _mm_set1_epi16((short)some);
+    const __m128i low = _mm_cmpeq_epi16(_mm_and_si128(each, bits[0]), bits[0]);
+    const __m128i high = _mm_cmpeq_epi16(_mm_and_si128(each, bits[1]), bits[1]);
+    return lanes_sets_joined(_mm_or_si128(_mm_and_si128(a.v[0], low), _mm_and_si128(a.v[1], high)));
+}
 
 #else
 
@@ -146,6 +206,18 @@ static inline unsigned lanes_within(lanes_sets a, unsigned set)
     unsigned bits = 0, i;
     for (i = 0; i < SC_LANES_COUNT; i++) bits |= (unsigned)((a.v[i] & ~set) == 0) << i;
     return bits;
+}
+static inline unsigned lanes_holding(lanes_sets a, unsigned set)
+{
+    unsigned bits = 0, i;
+    for (i = 0; i < SC_LANES_COUNT; i++) bits |= (unsigned)((a.v[i] & set) == set) << i;
+    return bits;
+}
+static inline unsigned lanes_sets_all(lanes_sets a, unsigned some)
+{
+    unsigned all = 0, i;
+    for (i = 0; i < SC_LANES_COUNT; i++) all |= some >> i & 1 ? a.v[i] : 0u;
+    return all;
 }
 
 #endif

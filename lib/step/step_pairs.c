@@ -116,30 +116,6 @@ void sc_step_pairs_take(sc_worker *w, int kind, uint32_t a, uint32_t b, double t
     }
 }
 
-void sc_step_pairs_take_all(sc_worker *w, int kind, const sc_pair *pairs, uint32_t count)
-{
-    sc_step_worker *step = w->step;
-    const sc_step_list *list = &step->question->list[kind];
-    const int turned = kind == SC_STEP_VERTEX_FACE && pairs[0].a >= SC_STEP_TURNED;
-    uint32_t i;
-    if (step->question->options.output == SC_OUTPUT_PAIRS && list->capacity) {
-        if (!w->share && step->count[kind] + count <= list->capacity) {
-            memcpy(list->pairs + step->count[kind], pairs, count * sizeof *pairs);
-            step->count[kind] += count;
-            step->turned += turned ? count : 0;
-            return;
-        }
-        if (w->share && step->found_count[kind] + count < SC_FOUND_MAX) {
-            memcpy(step->found[kind] + step->found_count[kind], pairs, count * sizeof *pairs);
-            step->found_count[kind] += count;
-            step->count[kind] += count;
-            step->turned += turned ? count : 0;
-            return;
-        }
-    }
-    for (i = 0; i < count; i++) sc_step_pairs_take(w, kind, pairs[i].a, pairs[i].b, 0);
-}
-
 /* Entries of a list by themselves. */
 static sc_step_list slice(const sc_step_list *list, uint64_t first, uint64_t count)
 {
