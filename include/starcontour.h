@@ -1421,9 +1421,9 @@ enum {
  * NULL for malloc; NULL is allowed. SC_ERROR_MEMORY: an allocation failed, and nothing is left.
  *
  * Cost: a walk of the mesh round each vertex, 0.1 seconds and 4 megabytes for 65,000 triangles and
- * four rings; memory grows with the square of rings. A search for what is within an edge of a cloth
- * of 65,000 triangles takes 13 milliseconds with them, 26 where nothing is left out, and 89 with
- * ignore_rings (one thread, AVX-512).
+ * four rings; memory grows with the square of rings. To count what is within an edge of a cloth of
+ * 65,000 triangles takes 10 milliseconds with them, 30 where nothing is left out, and 100 with
+ * ignore_rings (one thread, AVX-512; the mean over an animation).
  */
 typedef struct sc_near_masks sc_near_masks;
 
