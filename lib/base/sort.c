@@ -276,7 +276,7 @@ typedef struct digit {
    digits. So there are at most eight digits, with 4096 values: 16 KB of stack. */
 enum { COUNTED_MOST = 8, COUNTED_VALUES = 4 << DIGIT_BITS };
 
-/* The digits for some bits from lowest on, as equal as can be, of so many bits at most, behind those
+/* The digits for some bits from lowest on, as equal as can be, none wider than most, behind those
    that are there; returns how many there are then. */
 static unsigned choose_digits(unsigned bits, unsigned lowest, unsigned most, digit *digits,
                               unsigned count)
@@ -331,7 +331,7 @@ void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count)
 {
     uint64_t i, differ = 0;
     unsigned bits_a, bits_b;
-    sc_pair *sorted = pairs;
+    sc_pair *sorted;
     if (count < BYTE_MIN) {
         sc_sort_pairs(pairs, count);
         return;

@@ -75,7 +75,7 @@ static uint32_t hash_of(const subject *s, uint32_t count)
 }
 
 /* The weight of 0 of a stencil that may be merged; NULL: it may not. */
-static double *room_of(sc_near_stencil *stencil)
+static double *gap_of(sc_near_stencil *stencil)
 {
     int i;
     if (stencil->feature != SC_FEATURE_VERTEX_VERTEX && stencil->feature != SC_FEATURE_VERTEX_EDGE)
@@ -86,27 +86,27 @@ static double *room_of(sc_near_stencil *stencil)
 }
 
 /* What is written there: a number of 32 bits, and whether it is the second of a group. */
-static uint32_t read_room(const double *room, int *grouped)
+static uint32_t read_gap(const double *gap, int *grouped)
 {
     uint64_t bits;
-    memcpy(&bits, room, sizeof bits);
+    memcpy(&bits, gap, sizeof bits);
     *grouped = (int)(bits >> 32);
     return (uint32_t)bits;
 }
 
-static void write_room(double *room, uint32_t number, int grouped)
+static void write_gap(double *gap, uint32_t number, int grouped)
 {
     const uint64_t bits = (uint64_t)grouped << 32 | number;
-    memcpy(room, &bits, sizeof bits);
+    memcpy(gap, &bits, sizeof bits);
 }
 
 /* A stencil that is gone has the size of its group as its second vertex, and as its third which
    stencil follows the first of the group. */
 static void add_to_group(sc_near_stencil *stencils, uint32_t first, uint32_t member)
 {
-    double *room = room_of(&stencils[first]);
+    double *gap = gap_of(&stencils[first]);
     int grouped;
-    const uint32_t number = read_room(room, &grouped);
+    const uint32_t number = read_gap(gap, &grouped);
     stencils[member].feature = GONE;
     if (grouped) {
         stencils[number].vertices[1]++;
@@ -114,24 +114,24 @@ static void add_to_group(sc_near_stencil *stencils, uint32_t first, uint32_t mem
     }
     stencils[member].vertices[1] = 2;
     stencils[member].vertices[2] = number;
-    write_room(room, member, 1);
+    write_gap(gap, member, 1);
 }
 
 /* Which stencil of a chain follows. */
 static uint32_t next_of(sc_near_stencil *stencils, uint32_t first)
 {
     int grouped;
-    const uint32_t number = read_room(room_of(&stencils[first]), &grouped);
+    const uint32_t number = read_gap(gap_of(&stencils[first]), &grouped);
     return grouped ? stencils[number].vertices[2] : number;
 }
 
 /* Adds a stencil to the group of its subject, or puts it at the beginning of its chain. */
 static void put_in_table(sc_near_stencil *stencils, uint32_t count, uint32_t *table, uint32_t i)
 {
-    double *room = room_of(&stencils[i]);
+    double *gap = gap_of(&stencils[i]);
     subject s, t;
     uint32_t *chain, other;
-    if (!room) return;
+    if (!gap) return;
     s = subject_of(&stencils[i]);
     chain = &table[hash_of(&s, count)];
     for (other = *chain; other != SC_NONE; other = next_of(stencils, other)) {
@@ -141,7 +141,7 @@ static void put_in_table(sc_near_stencil *stencils, uint32_t count, uint32_t *ta
             return;
         }
     }
-    write_room(room, *chain, 0);
+    write_gap(gap, *chain, 0);
     *chain = i;
 }
 
@@ -151,14 +151,14 @@ uint32_t sc_merging_run(sc_near_stencil *stencils, uint32_t count, uint32_t *mul
     for (i = 0; i < count; i++) multiplicities[i] = SC_NONE;
     for (i = 0; i < count; i++) put_in_table(stencils, count, multiplicities, i);
     for (i = 0; i < count; i++) {
-        double *room = room_of(&stencils[i]);
+        double *gap = gap_of(&stencils[i]);
         uint32_t size = 1;
         int grouped;
         if (stencils[i].feature == GONE) continue;
-        if (room) {
-            const uint32_t number = read_room(room, &grouped);
+        if (gap) {
+            const uint32_t number = read_gap(gap, &grouped);
             if (grouped) size = stencils[number].vertices[1];
-            *room = 0;
+            *gap = 0;
         }
         if (left != i) stencils[left] = stencils[i];
         multiplicities[left++] = size;

@@ -194,8 +194,8 @@ static void join_boxes(const sc_model *model, sc_motion *m, uint32_t first, uint
         }
 }
 
-/* Leaf clusters that are looked at, all over the mesh, and one in how many may be without a low
-   triangle. */
+/* At most so many leaf clusters are looked at, all over the mesh, and one in so many may be without a
+   low triangle. */
 enum { LEAVES_SEEN = 128, LEAVES_HIGH = 4 };
 
 /* Whether the least altitude of a triangle at the start is at most the distance; unit: the points
@@ -230,11 +230,13 @@ static int has_low(const sc_model *model, const sc_frame *frame, uint32_t leaf)
 
 int sc_motion_is_wide(const sc_model *model, const sc_frame *frame)
 {
-    const uint32_t leaves = model->leaf_count, some = leaves < LEAVES_SEEN ? leaves : LEAVES_SEEN;
-    uint32_t i, high = 0;
-    for (i = 0; i < some && high <= some / LEAVES_HIGH; i++)
-        high += !has_low(model, frame, (uint32_t)((uint64_t)i * leaves / some));
-    return high <= some / LEAVES_HIGH;
+    const uint32_t step = model->leaf_count / LEAVES_SEEN + 1;
+    uint32_t left = model->leaf_count / step / LEAVES_HIGH, leaf;
+    for (leaf = 0; leaf < model->leaf_count; leaf += step) {
+        if (has_low(model, frame, leaf)) continue;
+        if (left-- == 0) return 0;
+    }
+    return 1;
 }
 
 static void refit_step(void *context, uint32_t level, uint32_t first, uint32_t end)
