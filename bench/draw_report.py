@@ -268,6 +268,8 @@ class Results:
             for path in (os.path.join(folder, name + ".csv")
                          for name in ("steps", "turns", "shots", "built", "near",
                                       "near_peers", "objects", "dataset")))
+        near = os.path.join(folder, "near.csv")
+        self.near_commit = read_csv(near)[1].get("commit") if os.path.exists(near) else None
         self.objects_peers = read_peers(os.path.join(folder, "objects_peers.csv"))
         self.dataset_peers = read_peers(os.path.join(folder, "dataset_peers.csv"), "unequal")
         self.trace_peers = read_peers(os.path.join(folder, "trace_peers.csv"), "verdict")
@@ -790,7 +792,9 @@ def add_near(out, results, drawn):
         out.append("Pairs of a vertex and a face, and of two edges, within a distance in median *edges* of the first\n"
                    "frame; nothing left out, one thread, one query a frame. `near` sorts its pairs; *counted* lists\n"
                    "none. How many times as fast it is as the plain tree of *boxes* with the same distances, a step\n"
-                   "that stands *still*, and such a step by *inflated* boxes; milliseconds of all frames.\n")
+                   "that stands *still*, and such a step by *inflated* boxes; milliseconds of all frames.%s\n"
+                   % ("" if results.near_commit == results.description["commit"] else
+                      "\nMeasured alone, at commit %s." % results.near_commit))
         if min(row["cpu_share"] for row in results.near) < 0.95:
             out.append("**Disturbed**: some of these runs had less than 95 % of a processor.\n")
         out.append(own)
