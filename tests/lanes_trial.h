@@ -152,6 +152,8 @@ static void try_sets(const lanes_input *in, lanes_outcome *out)
     out->bits[24] = lanes_within(one, in->mask);
     out->bits[25] = lanes_within(both, in->mask);
     out->bits[26] = lanes_within(lanes_sets_load(in->words), in->mask | in->words[0]);
+    out->bits[27] = lanes_holding(lanes_sets_load(in->words), in->words[0] & in->words[1]);
+    out->bits[28] = lanes_sets_all(both, in->mask);
 }
 
 static void try_cells(const lanes_input *in, lanes_outcome *out)

@@ -33,7 +33,7 @@ typedef struct lanes_input {
 typedef struct lanes_outcome {
     float row[77][16], one[3];
     double eight[16][8];
-    unsigned bits[27];
+    unsigned bits[29];
     uint32_t numbers[16], pairs[32], from[16], among[16];
     uint16_t wide[16];
     uint8_t list[16], bytes[15][16];

@@ -167,15 +167,20 @@ static void sets_within_sets(void)
     uint32_t trial, i;
     memset(&in, 0, sizeof in);
     for (trial = 0; trial < 2000; trial++) {
+        unsigned all = 0;
         draw(&in);
         lanes_try_plain(&in, &out);
         for (i = 0; i < 16; i++) {
             const unsigned one = 1u << in.number[i], other = 1u << in.number[16 + i];
+            const unsigned some = (unsigned)in.words[0] & in.words[1];
+            if (in.mask >> i & 1u) all |= one | other;
+            CHECK((out.bits[27] >> i & 1u) == (unsigned)((in.words[i] & some) == some));
             CHECK((out.bits[24] >> i & 1u) == (unsigned)((in.mask & one) != 0));
             CHECK((out.bits[25] >> i & 1u) == (unsigned)((~in.mask & (one | other)) == 0));
             CHECK((out.bits[26] >> i & 1u) ==
                   (unsigned)((in.words[i] & ~(in.mask | in.words[0])) == 0));
         }
+        CHECK(out.bits[28] == all);
     }
 }
 

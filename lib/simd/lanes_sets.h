@@ -8,6 +8,19 @@
  * tells which of them have no number that is not in one set, lanes_holding which have all of it;
  * lanes_sets_all joins those in some lanes.
  */
+#if SC_LANES_AVX512 || SC_LANES_AVX2 || SC_LANES_SSE2
+
+/* The numbers that any of eight sets has. */
+static inline unsigned lanes_sets_joined(__m128i h)
+{
+    h = _mm_or_si128(h, _mm_unpackhi_epi64(h, h));
+    h = _mm_or_si128(h, _mm_shuffle_epi32(h, 1));
+    h = _mm_or_si128(h, _mm_srli_epi32(h, 16));
+    return (unsigned)_mm_cvtsi128_si32(h) & 0xffffu;
+}
+
+#endif
+
 #if SC_LANES_AVX512 || SC_LANES_AVX2
 
 typedef __m256i lanes_sets;
@@ -23,13 +36,6 @@ static inline void lanes_sets_store(uint16_t *to, lanes_sets a)
 static inline lanes_sets lanes_sets_join(lanes_sets a, lanes_sets b)
 {
     return _mm256_or_si256(a, b);
-}
-static inline unsigned lanes_sets_joined(__m128i h)
-{
-    h = _mm_or_si128(h, _mm_unpackhi_epi64(h, h));
-    h = _mm_or_si128(h, _mm_shuffle_epi32(h, 1));
-    h = _mm_or_si128(h, _mm_srli_epi32(h, 16));
-    return (unsigned)_mm_cvtsi128_si32(h) & 0xffffu;
 }
 
 #  if SC_LANES_AVX512
@@ -96,14 +102,6 @@ static inline unsigned lanes_sets_all(lanes_sets a, unsigned some)
 typedef struct lanes_sets {
     __m128i v[2];
 } lanes_sets;
-
-static inline unsigned lanes_sets_joined(__m128i h)
-{
-    h = _mm_or_si128(h, _mm_unpackhi_epi64(h, h));
-    h = _mm_or_si128(h, _mm_shuffle_epi32(h, 1));
-    h = _mm_or_si128(h, _mm_srli_epi32(h, 16));
-    return (unsigned)_mm_cvtsi128_si32(h) & 0xffffu;
-}
 
 static inline lanes_sets lanes_sets_load(const uint16_t *sets)
 {
