@@ -290,5 +290,55 @@ static void near_stopped_early(void)
               some);
 }
 
+/* Lists so long that several workers sort them in parts; the second time most vertices of pairs have
+   low numbers, and a few such high ones that nearly all is in one part. */
+static void very_many_pairs(void)
+{
+    for (uint32_t i = 0; i < 2; ++i) {
+        soup cloth = soup_cloth(15, 15), last = soup_make(i ? 150000 : 3, 1), both;
+        near_question q = {"many pairs", NULL, NULL, NULL, 0};
+        sc_model *model = NULL;
+        sc_mesh mesh;
+        sc_pose pose;
+        memset(last.positions, 0, 3 * (size_t)last.vertex_count * sizeof(double));
+        for (uint32_t k = 0; k < 3; ++k) {
+            const uint32_t v = last.vertex_count - 3 + k;
+            last.triangles[k] = v;
+            last.positions[3 * (size_t)v + k] = 0.3;
+        }
+        both = soup_join(&cloth, &last);
+        soup_free(&cloth);
+        soup_free(&last);
+        mesh = input_plain_mesh(&both);
+        pose = input_plain_pose(both.positions, both.vertex_count);
+        q.pose = &pose;
+        if (CHECK(sc_build(&mesh, NULL, &model) == SC_OK)) {
+            sc_workspace *serial = near_workspace(model, 1), *shared = near_workspace(model, 3);
+            for (uint32_t workers = 1; workers < 4; ++workers) {
+                sc_near_options options = near_options_for(&near_ways[0], 2);
+                near_answer one, several;
+                host h;
+                q.model = model;
+                q.workspace = serial;
+                one = near_ask_all(&q, &options);
+                CHECK(one.count[0] > 100000 && one.count[1] > 100000);
+                host_start(&h, HOST_THREADS, workers);
+                options.tasks = &h.tasks;
+                q.workspace = shared;
+                several = near_ask_all(&q, &options);
+                CHECK_MSG(near_answers_are_same(&one, &several), "%" PRIu32 " workers", workers);
+                host_stop(&h);
+                near_answer_free(&one);
+                near_answer_free(&several);
+            }
+            sc_workspace_free(serial);
+            sc_workspace_free(shared);
+        }
+        sc_model_free(model);
+        soup_free(&both);
+    }
+}
+
 SC_TEST_MAIN(SC_TEST(culling_loses_nothing), SC_TEST(near_by_many_workers),
-             SC_TEST(more_leaf_clusters_than_places), SC_TEST(near_stopped_early))
+             SC_TEST(more_leaf_clusters_than_places), SC_TEST(near_stopped_early),
+             SC_TEST(very_many_pairs))

@@ -9,7 +9,7 @@
 
 enum {
     INSERTION_MAX = 24,
-    BYTE_VALUES = 256,
+    BYTE_VALUES = SC_SORT_PARTS,
     BYTE_MIN = 512, /* pairs, for which counting them pays */
     BYTES_MOST = 3, /* one in another; 4 KB of stack each */
     SAME_FEW = 4    /* with the same a, which are not worth passes by b */
@@ -182,6 +182,11 @@ static void sort_by_bytes(sc_pair *pairs, uint64_t count, int most)
         uint64_t begin = value ? end[value - 1] : 0;
         if (shift > 0 && end[value] - begin > 1) sort_some(pairs + begin, end[value] - begin, most);
     }
+}
+
+void sc_sort_in_parts(sc_pair *pairs, uint64_t count, uint64_t end[SC_SORT_PARTS])
+{
+    (void)split_by_bits(pairs, count, SC_SORT_PARTS, end);
 }
 
 void sc_sort_pairs(sc_pair *pairs, uint64_t count)

@@ -53,6 +53,11 @@ void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count);
    into parts that have room, and are in the cache. */
 void sc_sort_in_room(sc_pair *pairs, sc_pair *spare, uint64_t room, uint64_t count);
 
+/* Splits pairs in place by the highest bits in which they differ into SC_SORT_PARTS parts, of which
+   none has a pair that is greater than one of the next. end: where each ends. */
+enum { SC_SORT_PARTS = 256 };
+void sc_sort_in_parts(sc_pair *pairs, uint64_t count, uint64_t end[SC_SORT_PARTS]);
+
 /* Restores the heap (greatest pair first) below position at, where alone it may be broken. */
 void sc_sort_sift(sc_pair *heap, uint64_t count, uint64_t at);
 

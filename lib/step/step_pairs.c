@@ -202,6 +202,39 @@ static void order_list(void *context, uint64_t first, uint64_t count)
                         (uint64_t)(part * (double)(first + count)) - from, count);
 }
 
+/* From so many pairs on, one split into parts takes less time than several into halves. */
+enum { PARTS_PAY = 1 << 15 };
+
+/* A list without times, in parts that several workers sort. */
+typedef struct list_parts {
+    sc_pair *pairs, *spare;
+    uint64_t room; /* of each worker */
+    uint64_t end[SC_SORT_PARTS];
+} list_parts;
+
+static void order_part(void *context, uint32_t part, uint32_t worker)
+{
+    const list_parts *p = (const list_parts *)context;
+    const uint64_t first = part ? p->end[part - 1] : 0;
+    sc_sort_in_room(p->pairs + first, p->spare + worker * p->room, p->room, p->end[part] - first);
+}
+
+/* Splits a list into parts and sorts them; 0: most of it is in one part. */
+static int order_in_parts(const list_order *o, const sc_tasks *tasks)
+{
+    list_parts p;
+    uint32_t part;
+    if (o->list.times || o->count < PARTS_PAY) return 0;
+    p.pairs = o->list.pairs;
+    p.spare = o->spare;
+    p.room = o->room / tasks->workers;
+    sc_sort_in_parts(p.pairs, o->count, p.end);
+    for (part = 0; part < SC_SORT_PARTS; part++)
+        if (p.end[part] - (part ? p.end[part - 1] : 0) > o->count / 2) return 0;
+    sc_jobs_run(tasks, SC_SORT_PARTS, order_part, &p);
+    return 1;
+}
+
 void sc_step_pairs_finish(const sc_step_question *question, const uint64_t found[2], sc_pair *spare,
                           uint64_t room, const sc_tasks *tasks)
 {
@@ -214,9 +247,9 @@ void sc_step_pairs_finish(const sc_step_question *question, const uint64_t found
         o.spare = spare;
         o.room = room;
         if (!o.count) continue; /* there may be no array */
-        if (tasks)
-            sc_jobs_sort(tasks, o.count, split_some, order_list, &o);
-        else
+        if (!tasks)
             order_list(&o, 0, o.count);
+        else if (!order_in_parts(&o, tasks))
+            sc_jobs_sort(tasks, o.count, split_some, order_list, &o);
     }
 }
