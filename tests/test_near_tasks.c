@@ -295,7 +295,7 @@ static void near_stopped_early(void)
 static void very_many_pairs(void)
 {
     for (uint32_t i = 0; i < 2; ++i) {
-        soup cloth = soup_cloth(15, 15), last = soup_make(i ? 150000 : 3, 1), both;
+        soup cloth = soup_cloth(60, 60), last = soup_make(i ? 1000000 : 3, 1), both;
         near_question q = {"many pairs", NULL, NULL, NULL, 0};
         sc_model *model = NULL;
         sc_mesh mesh;
@@ -315,7 +315,7 @@ static void very_many_pairs(void)
         if (CHECK(sc_build(&mesh, NULL, &model) == SC_OK)) {
             sc_workspace *serial = near_workspace(model, 1), *shared = near_workspace(model, 3);
             for (uint32_t workers = 1; workers < 4; ++workers) {
-                sc_near_options options = near_options_for(&near_ways[0], 2);
+                sc_near_options options = near_options_for(&near_ways[0], 0.05);
                 near_answer one, several;
                 host h;
                 q.model = model;
