@@ -1186,7 +1186,8 @@ SC_API sc_status sc_trace_gradients(const sc_model *model, const sc_pose *pose,
 enum {
     SC_STEP_METHOD_DEFAULT = 0,
     SC_STEP_METHOD_SCTT = 1,      /* self-collision test tree, with normal cones and contours that
-                                     move */
+                                     move; with a large separation the plain tree, as
+                                     SC_NEAR_METHOD_SCTT says */
     SC_STEP_METHOD_TWO_BOXES = 2, /* the plain tree, with a box at the start and one at the end:
                                      a pair whose boxes are apart on the same side at both times
                                      is so at all times; likewise slabs of triangles */
@@ -1403,8 +1404,8 @@ enum {
     SC_NEAR_METHOD_DEFAULT = 0,
     SC_NEAR_METHOD_SCTT = 1, /* self-collision test tree: contours that are simple with a clearance
                                 of the distance cull what is smooth, where the distance is below the
-                                altitudes of triangles. Where a sample says that it hardly ever is,
-                                the plain tree is taken */
+                                altitudes of triangles. If it is so in less than about a quarter of
+                                the mesh, as a sample tells, the plain tree is taken */
     SC_NEAR_METHOD_BOXES = 2 /* the plain tree of boxes */
 };
 
@@ -1588,8 +1589,9 @@ SC_API sc_status sc_near_stencils(const sc_model *model, const sc_pose *pose, ui
  * multiplicities, which has count entries, gets for each of them how many it stands for. What is
  * behind them in both arrays means nothing.
  *
- * No memory is taken. By hashing: 0.04 us a stencil of 25,000, 0.3 us of a million. SC_ERROR_COUNT:
- * count is 2^32 or more; *merged_count is 0 on errors.
+ * No memory is taken. By hashing: 0.04 us a stencil of 25,000, 0.3 us of a million; vertex numbers
+ * that somebody chose for it can make the time grow with the square of count. SC_ERROR_COUNT: count
+ * is 2^32 or more; *merged_count is 0 on errors.
  */
 SC_API sc_status sc_near_merge(sc_near_stencil *stencils, uint64_t count, uint64_t *merged_count,
                                uint32_t *multiplicities);

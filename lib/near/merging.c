@@ -64,9 +64,9 @@ static int are_same(const subject *s, const subject *t)
 /* A number below count for each subject, much as if drawn. */
 static uint32_t hash_of(const subject *s, uint32_t count)
 {
-    uint64_t hash = (uint64_t)s->vertex[0] * 4 + s->feature;
+    uint64_t hash = (uint64_t)s->feature << 32;
     int i;
-    for (i = 1; i < 3; i++) {
+    for (i = 0; i < 3; i++) {
         hash = (hash ^ s->vertex[i]) * UINT64_C(0x9e3779b97f4a7c15);
         hash ^= hash >> 29;
     }

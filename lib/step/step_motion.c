@@ -194,8 +194,9 @@ static void join_boxes(const sc_model *model, sc_motion *m, uint32_t first, uint
         }
 }
 
-/* At most so many leaf clusters are looked at, all over the mesh, and one in so many may be without a
-   low triangle. */
+/* At most so many leaf clusters are looked at, all over the mesh; one in so many may have no low
+   triangle. With one in sixteen a bunny within half an edge took 1.17 of the plain tree's time,
+   with one in four 1.00. */
 enum { LEAVES_SEEN = 128, LEAVES_HIGH = 4 };
 
 /* Whether the least altitude of a triangle at the start is at most the distance; unit: the points

@@ -47,10 +47,10 @@ void sc_motion_keep_clear(double clearance, sc_frame *frame);
 sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
                          sc_impact_limits *limits, sc_frame *frame);
 
-/* Whether nearly all leaf clusters have triangles at the start that are lower than the distance, as
-   some leaf clusters tell. No contour of such a one is simple with that clearance, and to look for
-   contours takes a tenth of a search for what is near, and more where rings are left out. Decides
-   no answer. */
+/* Whether about three quarters of the leaf clusters, or more, have triangles at the start that are
+   no higher than the distance, as a sample tells. No contour of such a one is simple with that
+   clearance, and to look for contours takes a tenth of a search for what is near, and more where
+   rings are left out. Decides no answer. */
 int sc_motion_is_wide(const sc_model *model, const sc_frame *frame);
 
 /* Fills the frame's mask with normal cones that hold throughout the step. About 10 ns a
