@@ -74,15 +74,21 @@ static uint32_t hash_of(const subject *s, uint32_t count)
     return (uint32_t)((hash >> 32) * count >> 32);
 }
 
-/* The weight of 0 of a stencil that may be merged; NULL: it may not. */
+/* The first weight of 0, or the last weight if none is 0. */
 static double *gap_of(sc_near_stencil *stencil)
 {
     int i;
-    if (stencil->feature != SC_FEATURE_VERTEX_VERTEX && stencil->feature != SC_FEATURE_VERTEX_EDGE)
-        return NULL;
-    for (i = 0; i < 4; i++)
-        if (fabs(stencil->weights[i]) < DBL_MIN) return &stencil->weights[i];
-    return NULL;
+    for (i = 0; i < 3; i++)
+        if (fabs(stencil->weights[i]) < DBL_MIN) break;
+    return &stencil->weights[i];
+}
+
+/* Whether a stencil has a feature that may be merged, and a weight of 0. */
+static int may_be_merged(sc_near_stencil *stencil)
+{
+    return (stencil->feature == SC_FEATURE_VERTEX_VERTEX ||
+            stencil->feature == SC_FEATURE_VERTEX_EDGE) &&
+           fabs(*gap_of(stencil)) < DBL_MIN;
 }
 
 /* What is written there: a number of 32 bits, and whether it is the second of a group. */
@@ -128,10 +134,9 @@ static uint32_t next_of(sc_near_stencil *stencils, uint32_t first)
 /* Adds a stencil to the group of its subject, or puts it at the beginning of its chain. */
 static void put_in_table(sc_near_stencil *stencils, uint32_t count, uint32_t *table, uint32_t i)
 {
-    double *gap = gap_of(&stencils[i]);
     subject s, t;
     uint32_t *chain, other;
-    if (!gap) return;
+    if (!may_be_merged(&stencils[i])) return;
     s = subject_of(&stencils[i]);
     chain = &table[hash_of(&s, count)];
     for (other = *chain; other != SC_NONE; other = next_of(stencils, other)) {
@@ -141,7 +146,7 @@ static void put_in_table(sc_near_stencil *stencils, uint32_t count, uint32_t *ta
             return;
         }
     }
-    write_gap(gap, *chain, 0);
+    write_gap(gap_of(&stencils[i]), *chain, 0);
     *chain = i;
 }
 
@@ -151,11 +156,11 @@ uint32_t sc_merging_run(sc_near_stencil *stencils, uint32_t count, uint32_t *mul
     for (i = 0; i < count; i++) multiplicities[i] = SC_NONE;
     for (i = 0; i < count; i++) put_in_table(stencils, count, multiplicities, i);
     for (i = 0; i < count; i++) {
-        double *gap = gap_of(&stencils[i]);
         uint32_t size = 1;
         int grouped;
         if (stencils[i].feature == GONE) continue;
-        if (gap) {
+        if (may_be_merged(&stencils[i])) {
+            double *gap = gap_of(&stencils[i]);
             const uint32_t number = read_gap(gap, &grouped);
             if (grouped) size = stencils[number].vertices[1];
             *gap = 0;
