@@ -1359,10 +1359,11 @@ typedef struct sc_step_result {
  *                    called no more, unless the earliest time is sought
  *
  * All but accept is asked before a step decides a pair; sc_query_near asks only of pairs that are
- * near. Cost: with a rest pose a pass over its vertices, and about 0.1 microseconds for each pair
- * that is asked about; with triangle_groups for vertices a pass over the triangles; rings walk the
- * mesh round each feature until they reach the other, or as far as they go; a list is read once,
- * and looked up for each of these pairs.
+ * near. ignore_rings of both filters helps, besides, to cull what is smooth, with distances above
+ * the size of triangles, too; nothing else here does. Cost: with a rest pose a pass over its
+ * vertices, and about 0.1 microseconds for each pair that is asked about; with triangle_groups for
+ * vertices a pass over the triangles; rings walk the mesh round each feature until they reach the
+ * other, or as far as they go; a list is read once, and looked up for each of these pairs.
  *
  * Several threads. With options->tasks the passes over both poses, the walk through the tree,
  * boxes, the narrow phase and the sorting are done by all workers. Answer and counts in statistics
@@ -1404,8 +1405,10 @@ enum {
     SC_NEAR_METHOD_DEFAULT = 0,
     SC_NEAR_METHOD_SCTT = 1, /* self-collision test tree: contours that are simple with a clearance
                                 of the distance cull what is smooth, where the distance is below the
-                                altitudes of triangles. If it is so in less than about a quarter of
-                                the mesh, as a sample tells, the plain tree is taken */
+                                altitudes of triangles, or below n - 1 of them (7 at most), where
+                                masks or filters leave out n rings of all kinds that are asked for.
+                                If it is so in less than about a quarter of the mesh, as a sample
+                                tells, the plain tree is taken */
     SC_NEAR_METHOD_BOXES = 2 /* the plain tree of boxes */
 };
 

@@ -33,6 +33,8 @@ typedef struct sc_motion {
     float distance;          /* in the unit box: what is farther apart does not collide */
     float margin;   /* how far apart two sets of unit must be, so that the true ones are more than
                         that distance apart */
+    uint32_t rings; /* what is fewer edges of the mesh apart is not wanted; 0 or 1: all is */
+    float altitude; /* what projected triangles must be higher than: distance; with rings less */
     uint32_t swept; /* boxes are those of the whole motion */
     uint32_t ends;  /* 2; 1 where nothing moves, and what is of the end need not be there, but for
                         unit */

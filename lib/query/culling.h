@@ -29,7 +29,10 @@ void sc_culling_test_all(sc_worker *w, const uint32_t *nodes, uint32_t count, ui
 /* Puts a node where it belongs by its orientation test. */
 void sc_culling_orient(sc_worker *w, uint32_t node);
 
-/* Finds out where culling has prospects: writes to the frame. */
+/* Whether nodes are left to boxes where culling has no prospects. */
+int sc_culling_weighs_prospects(const sc_worker *w);
+
+/* Finds out where: writes to the frame. */
 void sc_culling_find_prospects(const sc_worker *w);
 
 #endif

@@ -32,6 +32,7 @@ typedef struct sc_question {
     int drops_neighbors; /* of triangles that share a vertex nothing is wanted */
     int has_last;   /* leaf clusters by themselves wait until all else is done, as contours of two
                      tell of most that nothing in them meets; the frame has normal cones of them */
+    int opens_all;  /* nodes are opened even where culling has no prospects, query/culling.c */
     int timed;      /* statistics are wanted: clocks are read */
     int ends_early; /* the first pair or a budget may end it: pairs do not wait for long */
     /* The contour test of some nodes: passed[i] says whether nothing in nodes[i] can meet. */

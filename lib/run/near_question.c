@@ -68,6 +68,7 @@ void sc_near_question_fill(const sc_near_result *result, sc_near_question *quest
     lists.stats = result->stats;
     sc_step_question_fill(&lists, &question->step);
     question->step.query.near = question;
+    question->step.query.opens_all = !o->masks;
     question->bounds = result->vertex_bounds;
 }
 

@@ -184,6 +184,7 @@ static sc_status begin_filters(const objects_run *run, const sc_object *o, part_
     step->options.rest = o->rest;
     step->options.rest_distance = o->rest_distance;
     q->near.options.masks = o->masks;
+    q->near.step.query.opens_all = !o->masks;
     if (o->masks && !sc_masks_fit(o->masks, o->model)) {
         sc_hooks_log(hooks_of(o), SC_LOG_ERROR, "object.masks are of another model");
         return SC_ERROR_OPTION;

@@ -432,7 +432,7 @@ static void do_alone(plan *p)
 
 static void walk_exact(plan *p)
 {
-    if (!p->question.step) sc_culling_find_prospects(p->w);
+    if (sc_culling_weighs_prospects(p->w)) sc_culling_find_prospects(p->w);
     sc_culling_orient(p->w, 0);
     while (p->tasks) {
         open_large(p);
@@ -490,6 +490,25 @@ static void walk_boxes(plan *p)
     add_roots(p);
     if (p->tasks) open_large(p);
     do_parts(p);
+}
+
+/* Nothing is wanted of all that is fewer edges of the mesh apart, whatever else is asked. */
+static uint32_t rings_left_out(const sc_question *question)
+{
+    const sc_step_question *step = question->step;
+    const sc_near_options *near = question->near ? &question->near->options : NULL;
+    const uint32_t by_masks = near && near->masks ? near->masks->rings : 0;
+    const int kinds = near ? (int)near->kinds : SC_NEAR_BOTH;
+    uint32_t rings = UINT32_MAX;
+    int k;
+    if (step->options.contour != SC_CONTOUR_EXACT) return 0;
+    for (k = 0; k < 2; k++) {
+        uint32_t of_kind = step->filters.of[k].ignore_rings;
+        if (kinds == (k == SC_STEP_VERTEX_FACE ? SC_NEAR_EDGE_EDGE : SC_NEAR_VERTEX_FACE)) continue;
+        of_kind = of_kind > by_masks ? of_kind : by_masks;
+        rings = of_kind < rings ? of_kind : rings;
+    }
+    return rings;
 }
 
 static void make_cones(sc_worker *w)
@@ -611,6 +630,8 @@ static int find_pairs(sc_workspace *workspace, sc_worker *worker, const sc_tasks
         p->filter.accept = NULL;
         p->question.filter = &p->filter;
     }
+    if (question->step && question->has_last)
+        sc_motion_leave_out_rings(rings_left_out(question), worker->frame);
     /* then the plain tree does what the test tree would, and sooner */
     if (question->has_last && question->step && sc_motion_is_wide(worker->model, worker->frame)) {
         p->question.options.method = SC_METHOD_AABB;

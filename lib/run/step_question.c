@@ -84,6 +84,7 @@ void sc_step_question_fill(const sc_step_result *result, sc_step_question *quest
         o->method == SC_STEP_METHOD_SCTT ? SC_METHOD_SCTT : SC_METHOD_AABB;
     question->query.options.contour = SC_CONTOUR_EXACT; /* for the order of nodes */
     question->query.has_last = o->method == SC_STEP_METHOD_SCTT;
+    question->query.opens_all = 1;
     question->query.ends_early =
         o->budget || (o->output == SC_OUTPUT_ANY && o->times == SC_STEP_TIMES_NONE);
     question->query.timed = result->stats != NULL;

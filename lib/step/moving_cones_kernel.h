@@ -44,7 +44,7 @@ static inline uint32_t mask_over(const sc_motion *m, const uint32_t *corner, uin
     const int normals = ends == 1 ? 1 : 3;
     const lanes half = lanes_all(0.5f), none = lanes_all(0);
     lanes e[2][3], f[2][3], n[3][3], error, e_size = none, f_size = none, longest = none, clear[2];
-    float d = m->distance;
+    float d = m->altitude;
     uint32_t mask = 0, i;
     int k, s, end;
     for (end = 0; end < ends; end++) {

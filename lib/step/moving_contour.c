@@ -21,6 +21,12 @@
  * lengths, so that x and y that are d apart along m in that plane are |(m.x length.x, m.y
  * length.y)| d apart here. Hence |m.x| clear.x + |m.y| clear.y, with clear = 5 error + length d, a
  * little more for its own rounding.
+ *
+ * Along the contour, where pairs are left out that are near on the mesh, it is (n - 1) h for ends
+ * of edges with n edges between them: what is wanted is a linear function of where the points are
+ * on both edges, and the distance along m is another, so that the four pairs of ends are enough.
+ * The inner loops add h to what is along m, twice at most, and round once more for each, and for
+ * what both are compared with: by less than one more error, and 2^-18 of h.
  */
 #include "base/bounds.h"
 #include "step/moving_contour.h"
@@ -39,16 +45,26 @@ typedef struct moving_vector {
     double x[2], y[2]; /* at the start and at the end */
 } moving_vector;
 
-/* What pairs of edges are tested with: for vectors between points, in double precision. */
+/* What vectors between points of edges are tested with, in double precision. */
 typedef struct clearance {
     double x, y; /* of a direction: |m.x| x + |m.y| y */
 } clearance;
 
-static clearance clearance_of(const sc_moving_contour *c)
+/* Has 5 errors; 2 are enough here, and nothing else rounds to speak of. */
+static clearance clearance_of(const float clear[2])
 {
-    clearance k; /* clear has 5 errors; 2 are enough here, and nothing else rounds to speak of */
-    k.x = (double)c->clear[0];
-    k.y = (double)c->clear[1];
+    clearance k;
+    k.x = (double)clear[0];
+    k.y = (double)clear[1];
+    return k;
+}
+
+/* The same for points with so many edges between them along the contour. */
+static clearance clearance_along(const sc_moving_contour *c, uint32_t edges)
+{
+    clearance k = clearance_of(c->open);
+    k.x += ((double)edges - 1) * (double)c->along[0];
+    k.y += ((double)edges - 1) * (double)c->along[1];
     return k;
 }
 
@@ -80,20 +96,22 @@ static moving_vector half_motion(moving_vector v, int second)
     return v;
 }
 
-/* Whether all vectors are clear along a direction. */
-static int are_clear_along(const moving_vector *v, int count, double x, double y, clearance k)
+/* Whether all vectors, v[i] by k[i], are clear along a direction. */
+static int are_clear_along(const moving_vector *v, int count, double x, double y,
+                           const clearance *k)
 {
-    double least = fabs(x) * k.x + fabs(y) * k.y + DBL_MIN;
     int i, s;
-    for (i = 0; i < count; i++)
+    for (i = 0; i < count; i++) {
+        const double least = fabs(x) * k[i].x + fabs(y) * k[i].y + DBL_MIN;
         for (s = 0; s < 2; s++)
             if (!(v[i].x[s] * x + v[i].y[s] * y > least)) return 0;
+    }
     return 1;
 }
 
 /* Whether some direction is found along which all vectors are clear: their sum, or the middle of
    those that the two outermost allow. */
-static int are_on_one_side(const moving_vector *v, int count, clearance k)
+static int are_on_one_side(const moving_vector *v, int count, const clearance *k)
 {
     double x = 0, y = 0, rx = v[0].x[0], ry = v[0].y[0], lx = rx, ly = ry, r, l;
     int i, s;
@@ -121,7 +139,7 @@ static int are_on_one_side(const moving_vector *v, int count, clearance k)
 }
 
 /* The four vectors from an edge to another. */
-static int are_edges_clear(const moving_vector v[4], clearance k, int halvings)
+static int are_edges_clear(const moving_vector v[4], const clearance k[4], int halvings)
 {
     moving_vector half[4];
     int i, second;
@@ -149,10 +167,12 @@ static int are_edges_clear(const moving_vector v[4], clearance k, int halvings)
  * found by its own edges. So where corners turn to the left, cross[1] is asked for nothing but
  * symmetry, and no test can fail without it.
  */
-static int are_open(const sc_moving_contour *c, const moving_vector v[2], clearance k, int halvings)
+static int are_open(const sc_moving_contour *c, const moving_vector v[2], const clearance k[2],
+                    int halvings)
 {
     double error = (double)c->start.error;
-    double known = SC_BOUNDS_MOVING_TURN * error, dx = k.x - known, dy = k.y - known; /* length d */
+    double known = SC_BOUNDS_MOVING_TURN * error, dx = k->x - known;
+    double dy = k->y - known; /* length d */
     double cross[3], size = 0, longest = 0, least;
     moving_vector half[2];
     int i, s, second;
@@ -183,15 +203,58 @@ static int are_open(const sc_moving_contour *c, const moving_vector v[2], cleara
     return 1;
 }
 
+static int is_listed_edge(const sc_moving_contour *c, uint32_t i)
+{
+    return c->start.edges->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1;
+}
+
+/* How many edges on from edge i edge j comes, if in the same chain and fewer than there are rings;
+   else 0. Chains are closed: after the last of one comes the first. */
+static uint32_t edges_on(const sc_moving_contour *c, uint32_t i, uint32_t j)
+{
+    uint32_t s;
+    for (s = 1; s < c->rings; s++) {
+        if (is_listed_edge(c, i + 1))
+            i++;
+        else
+            while (i && is_listed_edge(c, i - 1)) i--;
+        if (i == j) return s;
+    }
+    return 0;
+}
+
+/* Whether edge j, so many edges on from edge i, is as far from it as points so near along the
+   contour must be. */
+static int are_clear_on_mesh(const sc_moving_contour *c, uint32_t i, uint32_t j, uint32_t edges)
+{
+    moving_vector v[4], own, other;
+    clearance k[4];
+    uint32_t s;
+    for (s = 0; s < 4; s++) {
+        own = contour_point(c, i + s % 2);
+        other = contour_point(c, j + s / 2);
+        v[s] = moving_difference(other, &own);
+        k[s] = clearance_along(c, edges + s / 2 - s % 2);
+    }
+    return are_edges_clear(v, k, HALVINGS);
+}
+
 int sc_moving_contour_are_clear(sc_moving_contour *c, uint32_t i, uint32_t j)
 {
     const uint32_t *point = c->start.edges->point;
     uint32_t a = point[i], b = point[i + 1], p = point[j], q = point[j + 1];
     int shared = (a == p) + (a == q) + (b == p) + (b == q);
-    clearance k = clearance_of(c);
+    const clearance one = clearance_of(shared ? c->corner : c->clear);
+    const clearance k[4] = {one, one, one, one};
     moving_vector own[2], other[2], v[4];
     int s;
     if (shared > 1) return 0;
+    if (!shared && c->rings) {
+        uint32_t edges = edges_on(c, i, j);
+        if (edges) return are_clear_on_mesh(c, i, j, edges);
+        edges = edges_on(c, j, i);
+        if (edges) return are_clear_on_mesh(c, j, i, edges);
+    }
     for (s = 0; s < 2; s++) {
         own[s] = contour_point(c, i + (uint32_t)s);
         other[s] = contour_point(c, j + (uint32_t)s);
@@ -209,15 +272,20 @@ int sc_moving_contour_are_clear(sc_moving_contour *c, uint32_t i, uint32_t j)
 
 /* Sets what the axes and the error leave to be known. The square root of a sum of squares in double
    precision, rounded to float, is off by less than the factor; so is the sum. */
-static void set_clearance(sc_moving_contour *c, float distance)
+static void set_clearance(sc_moving_contour *c, const sc_motion *m)
 {
     int k;
+    c->rings = m->rings > 1 ? m->rings : 0;
     for (k = 0; k < 2; k++) {
         double x = (double)c->start.axis[k][0], y = (double)c->start.axis[k][1],
                z = (double)c->start.axis[k][2];
         c->length[k] = (float)sqrt(x * x + y * y + z * z) * 1.000001f;
         c->clear[k] =
-            (SC_BOUNDS_MOVING_TURN * c->start.error + c->length[k] * distance) * 1.000001f;
+            (SC_BOUNDS_MOVING_TURN * c->start.error + c->length[k] * m->distance) * 1.000001f;
+        c->corner[k] =
+            (SC_BOUNDS_MOVING_TURN * c->start.error + c->length[k] * m->altitude) * 1.000001f;
+        c->open[k] = (SC_BOUNDS_MOVING_TURN + 1) * c->start.error * 1.000001f;
+        c->along[k] = c->length[k] * m->altitude * 1.000004f;
     }
 }
 
@@ -236,7 +304,7 @@ static int stays_simple(sc_worker *w, const sc_projection *projection, uint32_t 
         sc_simple_middle(&c.start, w->frame->motion.unit, 8, c.start.from);
         sc_simple_middle(&c.start, w->frame->motion.unit + 4, 8, c.from);
         kernels->project(&c, w->frame->motion.unit);
-        set_clearance(&c, w->frame->motion.distance);
+        set_clearance(&c, &w->frame->motion);
         w->stats.counts[SC_TASK_UPDATE_CONTOURS] += c.start.count;
         sc_worker_switch(w, SC_TASK_CONTOUR);
         w->stats.counts[SC_TASK_CONTOUR]++;

@@ -16,6 +16,34 @@
  * the corner of all triangles at the other edge, their distance is an altitude.
  *
  * Altitudes are seen to with the normal cones (step/step_motion.h).
+ *
+ * Where pairs are left out that are fewer than k >= 2 edges of the mesh apart, less is enough. Let
+ * h = d / (k - 1), and let n(x, y) be the way along the contour between two of its points, each
+ * edge having length 1 and being gone along evenly. If
+ *   - all altitudes of projected triangles are more than h,
+ *   - of two edges of the contour, one of which comes fewer than k after the other, all
+ *     points x and y are more than (n(x, y) - 1) h apart, and
+ *   - those of all other edges that share no point more than d,
+ * then no pair that is not left out is within d. For a point of a triangle is a set of weights of
+ * its corners. Let delta(p, q) be the least cost of moving the weights of p to where those of q
+ * are, along edges of the mesh that cost 1 each. It is the most by which a function can change from
+ * p to q that changes by at most 1 along each edge, and in a triangle none of these is steeper than
+ * 1 over the least altitude. So along a straight line in the projected patch delta grows by at most
+ * 1 / h for each unit of length, and if the line from p to q, of length d or less, stays inside,
+ * delta(p, q) <= d / h < k. If not, let it leave the part that holds p at a point x of the contour,
+ * and come to the part that holds q at y. They are no more than d apart, and so one of them comes
+ * soon after the other: |xy| > (n(x, y) - 1) h, where n(x, y) >= delta(x, y). Then delta(p, q) <=
+ * |px| / h + delta(x, y) + |yq| / h < (d - |xy|) / h + |xy| / h + 1 = k. As delta is a mean of
+ * numbers of edges between corners of what p is in and corners of what q is in, one of these is
+ * less than k: the pair is left out.
+ *
+ * Edges that share a point, wherever they are in the contour, are to be open with a clearance of h
+ * (moving_contour.c): along some direction both lead away from each other by more than h, or the
+ * end of each is more than h away from the other's line. Points of them that are t and u edges away
+ * from the shared one are then more than (t + u) h / 2 apart, which is at least (t + u - 1) h.
+ *
+ * (A window along the contour without what is left of the way, the projection alone, or mean
+ * altitudes would lose pairs.)
  */
 #ifndef SC_STEP_MOVING_CONTOUR_H
 #define SC_STEP_MOVING_CONTOUR_H

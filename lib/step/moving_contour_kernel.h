@@ -5,6 +5,8 @@
  *
  * Pairs of edges are gone through as query/simple_kernel.h does: sixteen edges with those that
  * follow at a distance of up to SC_CONTOUR_NEAR, then runs by their boxes at both ends of the step.
+ * Where pairs are left out that are near on the mesh, edges of one chain that follow each other so
+ * nearly may come nearer.
  *
  * ends is 2, or 1 where nothing moves, as in a search for what is near: then only the start is
  * written and read, which takes about half the time.
@@ -55,11 +57,12 @@ static inline void extent_along(const lanes m[2], const moving_lanes *e, int end
     *most = lanes_larger(p, q);
 }
 
-/* How far apart two points along m must be, see moving_contour.c. */
-static inline lanes clear_along(const sc_moving_contour *c, const lanes m[2])
+/* How far apart two points along m must be, by what of the contour says so; see
+   moving_contour.c. */
+static inline lanes clear_along(const float clear[2], const lanes m[2])
 {
-    return lanes_add(lanes_add(lanes_multiply(lanes_absolute(m[0]), lanes_all(c->clear[0])),
-                               lanes_multiply(lanes_absolute(m[1]), lanes_all(c->clear[1]))),
+    return lanes_add(lanes_add(lanes_multiply(lanes_absolute(m[0]), lanes_all(clear[0])),
+                               lanes_multiply(lanes_absolute(m[1]), lanes_all(clear[1]))),
                      lanes_all(16 * FLT_MIN));
 }
 
@@ -68,7 +71,7 @@ static SC_INLINE unsigned are_apart_along(const sc_moving_contour *c, const lane
                                           const moving_lanes *e, const moving_lanes *f,
                                           const int ends)
 {
-    lanes clear = clear_along(c, m), e_least[2], e_most[2], f_least[2], f_most[2];
+    lanes clear = clear_along(c->clear, m), e_least[2], e_most[2], f_least[2], f_most[2];
     lanes above, below;
     int end;
     for (end = 0; end < ends; end++) {
@@ -113,6 +116,57 @@ static SC_INLINE unsigned are_apart(const sc_moving_contour *c, const moving_lan
     return asked & ~(left & ~are_apart_along(c, m, e, f, ends));
 }
 
+/* Bits of the edges e that are clear along m of the edges f, which come so many edges after them,
+   at least 2 and fewer than there are rings. Points with n edges between them are to be n - 1
+   altitudes apart: for each edge of those between there is one in clear, and the far ends are moved
+   nearer by one. */
+static SC_INLINE unsigned are_apart_on_mesh_along(const sc_moving_contour *c, const lanes m[2],
+                                                  const moving_lanes *e, const moving_lanes *f,
+                                                  uint32_t edges, const int ends)
+{
+    const lanes altitude = clear_along(c->along, m);
+    const lanes clear =
+        lanes_add(clear_along(c->open, m), lanes_multiply(lanes_all((float)edges - 2), altitude));
+    lanes above = lanes_all(0), below = above;
+    int end;
+    for (end = 0; end < ends; end++) {
+        const lanes far_e =
+            lanes_add(lanes_multiply(m[0], e->p[end][0]), lanes_multiply(m[1], e->p[end][1]));
+        const lanes near_e =
+            lanes_add(lanes_multiply(m[0], e->q[end][0]), lanes_multiply(m[1], e->q[end][1]));
+        const lanes near_f =
+            lanes_add(lanes_multiply(m[0], f->p[end][0]), lanes_multiply(m[1], f->p[end][1]));
+        const lanes far_f =
+            lanes_add(lanes_multiply(m[0], f->q[end][0]), lanes_multiply(m[1], f->q[end][1]));
+        const lanes up = lanes_subtract(lanes_smaller(near_f, lanes_subtract(far_f, altitude)),
+                                        lanes_larger(near_e, lanes_add(far_e, altitude)));
+        const lanes down = lanes_subtract(lanes_smaller(near_e, lanes_subtract(far_e, altitude)),
+                                          lanes_larger(near_f, lanes_add(far_f, altitude)));
+        above = end ? lanes_smaller(above, up) : up;
+        below = end ? lanes_smaller(below, down) : down;
+    }
+    return lanes_bits(lanes_below(clear, lanes_larger(above, below)));
+}
+
+/* The same along the way from middle to middle, or across one of the two. */
+static SC_INLINE unsigned are_apart_on_mesh(const sc_moving_contour *c, const moving_lanes *e,
+                                            const moving_lanes *f, uint32_t edges, const int ends)
+{
+    lanes m[2];
+    unsigned apart;
+    int k;
+    for (k = 0; k < 2; k++)
+        m[k] = lanes_subtract(lanes_add(both_ends(f->p, k, ends), both_ends(f->q, k, ends)),
+                              lanes_add(both_ends(e->p, k, ends), both_ends(e->q, k, ends)));
+    apart = are_apart_on_mesh_along(c, m, e, f, edges, ends);
+    m[0] = lanes_subtract(both_ends(e->q, 1, ends), both_ends(e->p, 1, ends));
+    m[1] = lanes_subtract(both_ends(e->p, 0, ends), both_ends(e->q, 0, ends));
+    apart |= are_apart_on_mesh_along(c, m, e, f, edges, ends);
+    m[0] = lanes_subtract(both_ends(f->q, 1, ends), both_ends(f->p, 1, ends));
+    m[1] = lanes_subtract(both_ends(f->p, 0, ends), both_ends(f->q, 0, ends));
+    return apart | are_apart_on_mesh_along(c, m, e, f, edges, ends);
+}
+
 /* The lesser of m . v and m . w. */
 static inline lanes along_both(const lanes m[2], const lanes v[2], const lanes w[2])
 {
@@ -138,7 +192,7 @@ static SC_INLINE unsigned run_on(const sc_moving_contour *c, const moving_lanes 
     least = along_both(m, (const lanes *)v[0], (const lanes *)w[0]);
     if (ends > 1)
         least = lanes_smaller(least, along_both(m, (const lanes *)v[1], (const lanes *)w[1]));
-    return lanes_bits(lanes_below(clear_along(c, m), least));
+    return lanes_bits(lanes_below(clear_along(c->corner, m), least));
 }
 
 /* Boxes of the runs of sixteen edges at one end of the step, each larger by half the clearance.
@@ -163,7 +217,7 @@ static SC_INLINE int are_near_clear(sc_moving_contour *c, uint32_t block, const 
     uint32_t i = block * SC_CONTOUR_BLOCK, s;
     unsigned edges = e->is_edge[block], following = edges | (unsigned)e->is_edge[block + 1] << 16;
     moving_lanes own, other;
-    unsigned left;
+    unsigned left, chained; /* the latter: edge s on is of the same chain */
     int k, end;
     for (end = 0; end < ends; end++)
         for (k = 0; k < 2; k++) {
@@ -173,7 +227,7 @@ static SC_INLINE int are_near_clear(sc_moving_contour *c, uint32_t block, const 
             other.q[end][k] = lanes_load(at + 2);
         }
     for (end = 0; end < ends; end++) enclose_runs(c, i, end, &own);
-    left = edges & following >> 1;
+    left = chained = edges & following >> 1;
     for (left &= ~run_on(c, &own, (const lanes(*)[2])other.q, ends); left; left &= left - 1) {
         uint32_t edge = i + sc_bits_lowest(left);
         if (!sc_moving_contour_are_clear(c, edge, edge + 1)) return 0;
@@ -185,6 +239,9 @@ static SC_INLINE int are_near_clear(sc_moving_contour *c, uint32_t block, const 
                 other.q[end][k] = lanes_load((end ? c->end->at[k] : e->at[k]) + i + s + 1);
             }
         left = edges & following >> s;
+        chained &= left;
+        if (s < c->rings && chained)
+            left &= ~(chained & are_apart_on_mesh(c, &own, &other, s, ends));
         if (!left) continue;
         for (left &= ~are_apart(c, &own, &other, left, ends); left; left &= left - 1) {
             uint32_t edge = i + sc_bits_lowest(left);

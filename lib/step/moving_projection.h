@@ -20,6 +20,10 @@ typedef struct sc_moving_contour {
     /* Of a direction m, |m.x| clear[0] + |m.y| clear[1] is how far apart two computed sets must be
        along it for the true ones to be as far apart as is wanted. See moving_contour.c. */
     float clear[2];
+    float corner[2]; /* the same for edges that share a point */
+    uint32_t rings;  /* edges that fewer are between along the contour may be nearer, or 0; then */
+    float open[2];   /* the same for what may come as near as is */
+    float along[2];  /* and what is added for each edge between them */
 } sc_moving_contour;
 
 #endif

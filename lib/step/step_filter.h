@@ -4,8 +4,8 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Culling knows nothing of them, and so loses nothing by them. A last stage asks twice, and where
- * filters->sifts or ->asks says that there is nothing to ask, not at all:
+ * Culling knows of rings alone, where both kinds have them (step/moving_contour.h). A last stage
+ * asks twice, and where filters->sifts or ->asks says that there is nothing to ask, not at all:
  *
  *     sc_step_filter_admits     groups, the list of pairs to ignore, rings, the rest pose
  *     sc_step_filter_accepts    the caller's function, of a pair that was found and admitted

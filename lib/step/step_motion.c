@@ -11,7 +11,12 @@
 
 #include "base/jobs.h"
 #include "pose/levels.h"
+#include "query/simple_contour.h"
 #include "step/step_kernels.h"
+
+/* With more rings contours are tested as with these, so that the edges that may come nearer are all
+   among those that the inner loops look at first. */
+enum { RINGS_MAX = SC_CONTOUR_NEAR + 1 };
 
 /* Fewer vertices are not worth a part of their own. */
 enum { STEP_VERTICES_MIN = 1024 };
@@ -133,6 +138,15 @@ void sc_motion_keep_clear(double clearance, sc_frame *frame)
     frame->motion.margin = sc_motion_margin(frame->motion.distance);
 }
 
+void sc_motion_leave_out_rings(uint32_t rings, sc_frame *frame)
+{
+    sc_motion *m = &frame->motion;
+    const float before = m->altitude;
+    m->rings = rings < RINGS_MAX ? rings : RINGS_MAX;
+    m->altitude = m->rings > 1 ? m->distance / (float)(m->rings - 1) * 1.000001f : m->distance;
+    if (m->altitude != before) frame->cones_ready = 0;
+}
+
 sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
                          sc_impact_limits *limits, sc_frame *frame)
 {
@@ -199,9 +213,9 @@ static void join_boxes(const sc_model *model, sc_motion *m, uint32_t first, uint
    with one in four 1.00. */
 enum { LEAVES_SEEN = 128, LEAVES_HIGH = 4 };
 
-/* Whether the least altitude of a triangle at the start is at most the distance; unit: the points
-   of the motion. */
-static int is_low(const uint32_t corner[3], const float *unit, float distance)
+/* Whether the least altitude of a triangle at the start is at most this; unit: the points of the
+   motion. */
+static int is_low(const uint32_t corner[3], const float *unit, float altitude)
 {
     float e[3][3], n[3], longest = 0, square = 0;
     int i, k;
@@ -215,7 +229,7 @@ static int is_low(const uint32_t corner[3], const float *unit, float distance)
     for (k = 0; k < 3; k++)
         n[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] - e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
     square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-    return square <= distance * distance * longest;
+    return square <= altitude * altitude * longest;
 }
 
 static int has_low(const sc_model *model, const sc_frame *frame, uint32_t leaf)
@@ -224,7 +238,7 @@ static int has_low(const sc_model *model, const sc_frame *frame, uint32_t leaf)
     uint32_t i;
     for (i = first[0]; i < first[1]; i++)
         if (is_low(sc_model_triangle(model) + 3 * (uint64_t)i, frame->motion.unit,
-                   frame->motion.distance))
+                   frame->motion.altitude))
             return 1;
     return 0;
 }

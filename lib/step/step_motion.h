@@ -47,8 +47,12 @@ void sc_motion_keep_clear(double clearance, sc_frame *frame);
 sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
                          sc_impact_limits *limits, sc_frame *frame);
 
+/* Says that nothing is wanted that is fewer edges of the mesh apart: how high triangles must be, to
+   be culled, and which cones are ready depends on it. After sc_motion_keep_clear. */
+void sc_motion_leave_out_rings(uint32_t rings, sc_frame *frame);
+
 /* Whether about three quarters of the leaf clusters, or more, have triangles at the start that are
-   no higher than the distance, as a sample tells. No contour of such a one is simple with that
+   no higher than the altitude, as a sample tells. No contour of such a one is simple with enough
    clearance, and to look for contours takes a tenth of a search for what is near, and more where
    rings are left out. Decides no answer. */
 int sc_motion_is_wide(const sc_model *model, const sc_frame *frame);
