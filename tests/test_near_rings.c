@@ -250,9 +250,9 @@ static double squeeze(double *positions, uint32_t count)
     case 0:
         return low * test_random_range(0.95, 1.6);
     case 1:
-        return low * test_random_range(0.5, 0.95);
+        return low * test_random_range(0.85, 0.99);
     default:
-        return low * test_random_range(0.9, 0.99);
+        return low * test_random_range(0.5, 0.9);
     }
 }
 

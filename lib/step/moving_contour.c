@@ -19,8 +19,9 @@
  * 0.6: 3.8 |m|1 error in all. Clearance is a distance d in space, and so at least d between
  * projections along unit vectors at right angles. The axes here are such vectors times their
  * lengths, so that x and y that are d apart along m in that plane are |(m.x length.x, m.y
- * length.y)| d apart here. Hence |m.x| clear.x + |m.y| clear.y, with clear = 5 error + length d, a
- * little more for its own rounding.
+ * length.y)| d apart here. Hence (|m.x| + |m.y|) known + |(m.x reach.x, m.y reach.y)|, with known =
+ * 5 error and reach = length d, a little more for its own rounding. The inner loops take the larger
+ * component of such a vector and 0.41422 times the smaller, which is at least its length.
  *
  * Along the contour, where pairs are left out that are near on the mesh, it is (n - 1) h for ends
  * of edges with n edges between them: what is wanted is a linear function of where the points are
@@ -47,25 +48,32 @@ typedef struct moving_vector {
 
 /* What vectors between points of edges are tested with, in double precision. */
 typedef struct clearance {
-    double x, y; /* of a direction: |m.x| x + |m.y| y */
+    double known, x, y; /* of a direction m: (|m.x| + |m.y|) known + |(m.x x, m.y y)| */
 } clearance;
 
 /* Has 5 errors; 2 are enough here, and nothing else rounds to speak of. */
-static clearance clearance_of(const float clear[2])
+static clearance clearance_of(const sc_moving_contour *c, const float reach[2])
 {
     clearance k;
-    k.x = (double)clear[0];
-    k.y = (double)clear[1];
+    k.known = (double)c->known;
+    k.x = (double)reach[0];
+    k.y = (double)reach[1];
     return k;
 }
 
 /* The same for points with so many edges between them along the contour. */
 static clearance clearance_along(const sc_moving_contour *c, uint32_t edges)
 {
-    clearance k = clearance_of(c->open);
-    k.x += ((double)edges - 1) * (double)c->along[0];
-    k.y += ((double)edges - 1) * (double)c->along[1];
+    clearance k = clearance_of(c, c->altitude);
+    k.x *= (double)edges - 1;
+    k.y *= (double)edges - 1;
     return k;
+}
+
+/* The length of a vector, no less. */
+static double length_of(double x, double y)
+{
+    return sqrt(x * x + y * y) * (1 + 8 * DBL_EPSILON) + DBL_MIN;
 }
 
 static moving_vector contour_point(const sc_moving_contour *c, uint32_t i)
@@ -102,7 +110,8 @@ static int are_clear_along(const moving_vector *v, int count, double x, double y
 {
     int i, s;
     for (i = 0; i < count; i++) {
-        const double least = fabs(x) * k[i].x + fabs(y) * k[i].y + DBL_MIN;
+        const double least =
+            (fabs(x) + fabs(y)) * k[i].known + length_of(x * k[i].x, y * k[i].y) + DBL_MIN;
         for (s = 0; s < 2; s++)
             if (!(v[i].x[s] * x + v[i].y[s] * y > least)) return 0;
     }
@@ -155,7 +164,7 @@ static int are_edges_clear(const moving_vector v[4], const clearance k[4], int h
 /*
  * Two edges from a shared point: v[0] is the opposite of one, v[1] the other. Their cross product
  * is off by 2 error (|a|1 + |b|1) + 8 error^2, and to be larger than d times the longer edge, in
- * the plane of unit vectors; lengths of edges there are at most |x| / length.x + |y| / length.y,
+ * the plane of unit vectors; lengths of edges there are |(x / length.x, y / length.y)|,
  * and areas smaller by length.x length.y.
  *
  * If the two fold onto each other between the ends, the far end of the shorter one lies on the
@@ -170,9 +179,7 @@ static int are_edges_clear(const moving_vector v[4], const clearance k[4], int h
 static int are_open(const sc_moving_contour *c, const moving_vector v[2], const clearance k[2],
                     int halvings)
 {
-    double error = (double)c->start.error;
-    double known = SC_BOUNDS_MOVING_TURN * error, dx = k->x - known;
-    double dy = k->y - known; /* length d */
+    const double error = (double)c->start.error;
     double cross[3], size = 0, longest = 0, least;
     moving_vector half[2];
     int i, s, second;
@@ -182,8 +189,8 @@ static int are_open(const sc_moving_contour *c, const moving_vector v[2], const 
         for (s = 0; s < 2; s++) {
             double x = fabs(v[i].x[s]), y = fabs(v[i].y[s]);
             one = one > x + y ? one : x + y;
-            /* d u w (x / u + y / w), and the errors of x and y */
-            longest = fmax(longest, (x + 2 * error) * dy + (y + 2 * error) * dx);
+            /* d u w |(x / u, y / w)|, and the errors of x and y */
+            longest = fmax(longest, length_of((x + 2 * error) * k->y, (y + 2 * error) * k->x));
         }
         size += one;
     }
@@ -244,7 +251,7 @@ int sc_moving_contour_are_clear(sc_moving_contour *c, uint32_t i, uint32_t j)
     const uint32_t *point = c->start.edges->point;
     uint32_t a = point[i], b = point[i + 1], p = point[j], q = point[j + 1];
     int shared = (a == p) + (a == q) + (b == p) + (b == q);
-    const clearance one = clearance_of(shared ? c->corner : c->clear);
+    const clearance one = clearance_of(c, shared ? c->altitude : c->reach);
     const clearance k[4] = {one, one, one, one};
     moving_vector own[2], other[2], v[4];
     int s;
@@ -276,16 +283,15 @@ static void set_clearance(sc_moving_contour *c, const sc_motion *m)
 {
     int k;
     c->rings = m->rings > 1 ? m->rings : 0;
+    c->known = SC_BOUNDS_MOVING_TURN * c->start.error * 1.000001f;
+    c->open = (SC_BOUNDS_MOVING_TURN + 1) * c->start.error * 1.000001f;
     for (k = 0; k < 2; k++) {
         double x = (double)c->start.axis[k][0], y = (double)c->start.axis[k][1],
                z = (double)c->start.axis[k][2];
         c->length[k] = (float)sqrt(x * x + y * y + z * z) * 1.000001f;
-        c->clear[k] =
-            (SC_BOUNDS_MOVING_TURN * c->start.error + c->length[k] * m->distance) * 1.000001f;
-        c->corner[k] =
-            (SC_BOUNDS_MOVING_TURN * c->start.error + c->length[k] * m->altitude) * 1.000001f;
-        c->open[k] = (SC_BOUNDS_MOVING_TURN + 1) * c->start.error * 1.000001f;
-        c->along[k] = c->length[k] * m->altitude * 1.000004f;
+        c->reach[k] = c->length[k] * m->distance * 1.000001f;
+        c->clear[k] = (c->known + c->reach[k]) * 1.000001f;
+        c->altitude[k] = c->length[k] * m->altitude * 1.000004f;
     }
 }
 

@@ -57,13 +57,19 @@ static inline void extent_along(const lanes m[2], const moving_lanes *e, int end
     *most = lanes_larger(p, q);
 }
 
-/* How far apart two points along m must be, by what of the contour says so; see
-   moving_contour.c. */
-static inline lanes clear_along(const float clear[2], const lanes m[2])
+/* At least the length of (m.x reach.x, m.y reach.y), see moving_contour.c. */
+static inline lanes reach_along(const float reach[2], const lanes m[2])
 {
-    return lanes_add(lanes_add(lanes_multiply(lanes_absolute(m[0]), lanes_all(clear[0])),
-                               lanes_multiply(lanes_absolute(m[1]), lanes_all(clear[1]))),
-                     lanes_all(16 * FLT_MIN));
+    const lanes x = lanes_multiply(lanes_absolute(m[0]), lanes_all(reach[0]));
+    const lanes y = lanes_multiply(lanes_absolute(m[1]), lanes_all(reach[1]));
+    return lanes_add(lanes_larger(x, y), lanes_multiply(lanes_all(0.41422f), lanes_smaller(x, y)));
+}
+
+/* How far apart along m two computed points may be whose places are the same. */
+static inline lanes known_along(float known, const lanes m[2])
+{
+    const lanes size = lanes_add(lanes_absolute(m[0]), lanes_absolute(m[1]));
+    return lanes_add(lanes_multiply(size, lanes_all(known)), lanes_all(16 * FLT_MIN));
 }
 
 /* Bits of the edges e that are clear of f along m: beyond it, or on this side if that counts. */
@@ -71,8 +77,8 @@ static SC_INLINE unsigned are_apart_along(const sc_moving_contour *c, const lane
                                           const moving_lanes *e, const moving_lanes *f,
                                           const int ends)
 {
-    lanes clear = clear_along(c->clear, m), e_least[2], e_most[2], f_least[2], f_most[2];
-    lanes above, below;
+    const lanes clear = lanes_add(known_along(c->known, m), reach_along(c->reach, m));
+    lanes e_least[2], e_most[2], f_least[2], f_most[2], above, below;
     int end;
     for (end = 0; end < ends; end++) {
         extent_along(m, e, end, &e_least[end], &e_most[end]);
@@ -124,9 +130,9 @@ static SC_INLINE unsigned are_apart_on_mesh_along(const sc_moving_contour *c, co
                                                   const moving_lanes *e, const moving_lanes *f,
                                                   uint32_t edges, const int ends)
 {
-    const lanes altitude = clear_along(c->along, m);
+    const lanes altitude = reach_along(c->altitude, m);
     const lanes clear =
-        lanes_add(clear_along(c->open, m), lanes_multiply(lanes_all((float)edges - 2), altitude));
+        lanes_add(known_along(c->open, m), lanes_multiply(lanes_all((float)edges - 2), altitude));
     lanes above = lanes_all(0), below = above;
     int end;
     for (end = 0; end < ends; end++) {
@@ -192,7 +198,8 @@ static SC_INLINE unsigned run_on(const sc_moving_contour *c, const moving_lanes 
     least = along_both(m, (const lanes *)v[0], (const lanes *)w[0]);
     if (ends > 1)
         least = lanes_smaller(least, along_both(m, (const lanes *)v[1], (const lanes *)w[1]));
-    return lanes_bits(lanes_below(clear_along(c->corner, m), least));
+    return lanes_bits(
+        lanes_below(lanes_add(known_along(c->known, m), reach_along(c->altitude, m)), least));
 }
 
 /* Boxes of the runs of sixteen edges at one end of the step, each larger by half the clearance.

@@ -17,13 +17,14 @@ typedef struct sc_moving_contour {
     int ends;        /* 1: nothing moves, and end is not written; else 2 */
     float from[3];   /* at the end */
     float length[2]; /* of the axes: |axis|2, rounded up */
-    /* Of a direction m, |m.x| clear[0] + |m.y| clear[1] is how far apart two computed sets must be
-       along it for the true ones to be as far apart as is wanted. See moving_contour.c. */
-    float clear[2];
-    float corner[2]; /* the same for edges that share a point */
-    uint32_t rings;  /* edges that fewer are between along the contour may be nearer, or 0; then */
-    float open[2];   /* the same for what may come as near as is */
-    float along[2];  /* and what is added for each edge between them */
+    /* Of a direction m, (|m.x| + |m.y|) known, and the length of (m.x reach[0], m.y reach[1]), is
+       how far apart two computed sets must be along it for the true ones to be as far apart as is
+       wanted. See moving_contour.c. */
+    float known, reach[2];
+    float clear[2];    /* at least that along the axes */
+    float altitude[2]; /* in place of reach, for edges that share a point */
+    uint32_t rings;    /* edges that come fewer after each other may be nearer; 0: none may */
+    float open;        /* in place of known, for those: then altitude counts for each edge between */
 } sc_moving_contour;
 
 #endif
