@@ -291,12 +291,12 @@ static void open_trial(trial *t)
         s.mesh = wound_strip();
         break;
     case 1:
+    case 2:
         t->q.name = "triangles";
         s.mesh = scattered_triangles();
         t->rings = 5 + test_random_below(4);
         t->distance = test_random_range(0.01, 0.4);
         break;
-    case 2:
     case 3:
         t->q.name = "torn sheet";
         torn_sheet(&s);
