@@ -71,7 +71,7 @@ static clearance clearance_along(const sc_moving_contour *c, uint32_t edges)
 }
 
 /* The length of a vector, no less. */
-static double length_of(double x, double y)
+static double plane_length(double x, double y)
 {
     return sqrt(x * x + y * y) * (1 + 8 * DBL_EPSILON) + DBL_MIN;
 }
@@ -111,7 +111,7 @@ static int are_clear_along(const moving_vector *v, int count, double x, double y
     int i, s;
     for (i = 0; i < count; i++) {
         const double least =
-            (fabs(x) + fabs(y)) * k[i].known + length_of(x * k[i].x, y * k[i].y) + DBL_MIN;
+            (fabs(x) + fabs(y)) * k[i].known + plane_length(x * k[i].x, y * k[i].y) + DBL_MIN;
         for (s = 0; s < 2; s++)
             if (!(v[i].x[s] * x + v[i].y[s] * y > least)) return 0;
     }
@@ -190,7 +190,7 @@ static int are_open(const sc_moving_contour *c, const moving_vector v[2], const 
             double x = fabs(v[i].x[s]), y = fabs(v[i].y[s]);
             one = one > x + y ? one : x + y;
             /* d u w |(x / u, y / w)|, and the errors of x and y */
-            longest = fmax(longest, length_of((x + 2 * error) * k->y, (y + 2 * error) * k->x));
+            longest = fmax(longest, plane_length((x + 2 * error) * k->y, (y + 2 * error) * k->x));
         }
         size += one;
     }
