@@ -277,6 +277,20 @@ typedef struct tally {
     uint64_t culled, wanted; /* of those where something was culled */
 } tally;
 
+/* So that contours begin anywhere. */
+static void shuffle(soup *mesh)
+{
+    for (uint32_t i = mesh->triangle_count; i > 1; --i) {
+        uint32_t *one = mesh->triangles + 3 * (size_t)(i - 1);
+        uint32_t *other = mesh->triangles + 3 * (size_t)test_random_below(i);
+        const uint32_t turn = test_random_below(3);
+        uint32_t t[3];
+        memcpy(t, one, sizeof t);
+        memmove(one, other, sizeof t);
+        for (uint32_t k = 0; k < 3; ++k) other[k] = t[(k + turn) % 3];
+    }
+}
+
 static void open_trial(trial *t)
 {
     sc_mesh input;
@@ -311,6 +325,7 @@ static void open_trial(trial *t)
         break;
     }
     t->mesh = s.mesh;
+    if (test_random_below(2)) shuffle(&t->mesh);
     t->q.state = state;
     t->start = (double *)test_allocate(6 * (size_t)t->mesh.vertex_count * sizeof *t->start);
     t->end = t->start + 3 * (size_t)t->mesh.vertex_count;

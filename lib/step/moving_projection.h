@@ -24,7 +24,7 @@ typedef struct sc_moving_contour {
     float clear[2];    /* at least that along the axes */
     float altitude[2]; /* in place of reach, for edges that share a point */
     uint32_t rings;    /* edges that come fewer after each other may be nearer; 0: none may */
-    float open;        /* in place of known, for those: then altitude counts for each edge between */
+    float open;        /* in place of known, for those; altitude counts for each edge between */
 } sc_moving_contour;
 
 #endif
