@@ -14,10 +14,6 @@
 #include "query/simple_contour.h"
 #include "step/step_kernels.h"
 
-/* With more rings contours are tested as with these, so that the edges that may come nearer are all
-   among those that the inner loops look at first. */
-enum { RINGS_MAX = SC_CONTOUR_NEAR + 1 };
-
 /* Fewer vertices are not worth a part of their own. */
 enum { STEP_VERTICES_MIN = 1024 };
 
@@ -142,7 +138,9 @@ void sc_motion_leave_out_rings(uint32_t rings, sc_frame *frame)
 {
     sc_motion *m = &frame->motion;
     const float before = m->altitude;
-    m->rings = rings < RINGS_MAX ? rings : RINGS_MAX;
+    /* not more, so that the edges that may be nearer are all among those that the inner loops look at
+       first */
+    m->rings = rings <= SC_CONTOUR_NEAR ? rings : SC_CONTOUR_NEAR + 1u;
     m->altitude = m->rings > 1 ? m->distance / (float)(m->rings - 1) * 1.000001f : m->distance;
     if (m->altitude != before) frame->cones_ready = 0;
 }
