@@ -138,8 +138,8 @@ void sc_motion_leave_out_rings(uint32_t rings, sc_frame *frame)
 {
     sc_motion *m = &frame->motion;
     const float before = m->altitude;
-    /* not more, so that the edges that may be nearer are all among those that the inner loops look at
-       first */
+    /* not more, so that the edges that may be nearer are all among those that the inner loops look
+       at first */
     m->rings = rings <= SC_CONTOUR_NEAR ? rings : SC_CONTOUR_NEAR + 1u;
     m->altitude = m->rings > 1 ? m->distance / (float)(m->rings - 1) * 1.000001f : m->distance;
     if (m->altitude != before) frame->cones_ready = 0;
